@@ -11,7 +11,7 @@
 namespace driftlab {
 
 /// Grows whenever the same study could give another report.
-inline constexpr int kInvestigationVersion = 6;
+inline constexpr int kInvestigationVersion = 7;
 
 struct InvestigationRequest {
   std::string study;  ///< the name of the study, as the report gives it

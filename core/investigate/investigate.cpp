@@ -176,7 +176,7 @@ struct Taken {
   std::vector<MeasuredFigures> figures;
   std::vector<Remainder> remains;  ///< of all of them
   std::vector<UnnamedFinding> unnamed;
-  std::vector<UnnamedFinding> instead;  ///< of levels of noise that were found
+  std::vector<UnnamedFinding> instead;  ///< of levels of noise and mean effects that were found
 };
 
 /// The base beside the means that were found without a name. What is left of a process that had followed one of them,
@@ -214,12 +214,14 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   taken.checks.push_back(check_channel(group, outcome));
   taken.means.push_back(means_of(outcome.before));
   taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
-  const bool levels = std::any_of(outcome.found.begin(), outcome.found.end(),
-                                  [](const Evidence& evidence) { return evidence.cause->as<NoiseLevel>() != nullptr; });
-  if (levels && outcome.usable && !stop.stop_requested()) {
-    std::vector<UnnamedFinding> instead = find_levels_instead(group, outcome.before);
-    taken.instead.insert(taken.instead.end(), std::make_move_iterator(instead.begin()),
-                         std::make_move_iterator(instead.end()));
+  for (const UnnamedKind kind : {UnnamedKind::Variance, UnnamedKind::Mean}) {
+    const bool asked = std::any_of(outcome.found.begin(), outcome.found.end(),
+                                   [&](const Evidence& evidence) { return may_be_a_profile(evidence, kind); });
+    if (asked && outcome.usable && !stop.stop_requested()) {
+      std::vector<UnnamedFinding> instead = find_instead(group, outcome.before, kind);
+      taken.instead.insert(taken.instead.end(), std::make_move_iterator(instead.begin()),
+                           std::make_move_iterator(instead.end()));
+    }
   }
   outcome.before = {};
   if (outcome.usable && !stop.stop_requested()) {

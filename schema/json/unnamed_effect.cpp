@@ -52,7 +52,7 @@ void read_unnamed_effect(const Json& document, const std::string& pointer, inves
   if (!kind || !against || (*kind == UnnamedKind::Spectrum) != (*against == Against::Frequency)) {
     faults.add(pointer + "/kind", ErrorCode::InvalidArgument,
                "A profile is a spectrum against frequency, or a variance or a mean against time, phase, rate, "
-               "angular_acceleration, temperature or angle.");
+               "angular_acceleration, temperature, warming or angle.");
     return;
   }
   if (*against == Against::Phase) {

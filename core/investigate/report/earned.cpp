@@ -170,7 +170,8 @@ bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
     case UnnamedKind::Mean:
       break;
   }
-  return cause.as<MeanEffect>() != nullptr || cause.as<SlowNoise>() != nullptr || cause.as<SpectralLine>() != nullptr;
+  return cause.as<MeanEffect>() != nullptr || cause.as<SlowNoise>() != nullptr || cause.as<SpectralLine>() != nullptr ||
+         cause.as<NoiseTails>() != nullptr;
 }
 
 /// What is left is a rival of a finding from this share of its gain on. Chosen, not measured.
@@ -208,17 +209,38 @@ bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::ve
   });
 }
 
+/// What a profile must gain to predict more than `gain`. Chosen, not measured: a profile is measured on more of the
+/// data than a cause is that halves judge.
+double more_than(double gain) { return 1.15 * std::max(gain, 0.0) + 3.0; }
+
+/// Whether a profile in place of findings predicts more than `gain`.
+bool predicts_more(const std::vector<UnnamedFinding>& instead, const ChannelGroup& group, UnnamedKind kind,
+                   double gain) {
+  return std::any_of(instead.begin(), instead.end(), [&](const UnnamedFinding& one) {
+    return one.effect.kind == kind && one.effect.column == group.column && one.heldout_gain > more_than(gain);
+  });
+}
+
 /// A profile in place of a level, that of recordings or of parts of them, predicts more. A level that itself goes with
 /// a quantity is not asked.
-bool surpassed(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& levels) {
-  constexpr double kMore = 3.0;      // [nat], as the next chosen, not measured: a profile is measured on more of the
-  constexpr double kByShare = 1.15;  // data than a cause is that halves judge.
+bool level_is_surpassed(const Evidence& evidence, const ChannelGroup& group,
+                        const std::vector<UnnamedFinding>& instead) {
   const NoiseLevel* const level = evidence.cause->as<NoiseLevel>();
   const bool of_recordings = level != nullptr && (level->replaces_white || level->within_recording);
-  return of_recordings && evidence.heldout && std::any_of(levels.begin(), levels.end(), [&](const UnnamedFinding& one) {
-           return one.effect.column == group.column &&
-                  one.heldout_gain > kByShare * std::max(evidence.heldout_gain, 0.0) + kMore;
-         });
+  return of_recordings && evidence.heldout &&
+         predicts_more(instead, group, UnnamedKind::Variance, evidence.heldout_gain);
+}
+
+/// A profile in place of all mean effects of the channel predicts more than they do together.
+bool mean_is_surpassed(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& instead,
+                       const std::vector<Evidence>& found) {
+  double together = 0.0;
+  for (const Evidence& other : found) {
+    const bool counts = other.group == evidence.group && other.cause->as<MeanEffect>() != nullptr;
+    together += counts ? std::max(other.heldout_gain, 0.0) : 0.0;
+  }
+  return evidence.cause->as<MeanEffect>() != nullptr && evidence.heldout &&
+         predicts_more(instead, group, UnnamedKind::Mean, together);
 }
 
 /// Noise that still changes takes every finding of noise back. A mean effect is taken back by what a mean can show
@@ -313,6 +335,11 @@ std::vector<const StudyRecording*> suspects_of(const Study& study, const std::ve
   return suspects;
 }
 
+bool may_be_a_profile(const Evidence& evidence, UnnamedKind kind) {
+  return kind == UnnamedKind::Variance ? evidence.cause->as<NoiseLevel>() != nullptr
+                                       : kind == UnnamedKind::Mean && evidence.cause->as<MeanEffect>() != nullptr;
+}
+
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
                               const std::vector<Remainder>& remains, const Instead& instead, const Report& report,
                               std::vector<Evidence>& found) {
@@ -324,8 +351,11 @@ void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std
     if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], instead.beside, groups.size())) {
       evidence.doubt = "a profile that has no name predicts the recordings beside it";
     }
-    if (evidence.doubt.empty() && surpassed(evidence, groups[evidence.group], instead.levels)) {
+    if (evidence.doubt.empty() && level_is_surpassed(evidence, groups[evidence.group], instead.instead)) {
       evidence.doubt = "noise that goes with a quantity predicts the recordings better";
+    }
+    if (evidence.doubt.empty() && mean_is_surpassed(evidence, groups[evidence.group], instead.instead, found)) {
+      evidence.doubt = "a mean that goes with a quantity in another way predicts the recordings better";
     }
     const StudyRecording* const suspect = suspect_of(evidence, groups[evidence.group], instead.suspects);
     if (evidence.doubt.empty() && suspect != nullptr) {

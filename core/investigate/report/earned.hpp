@@ -13,13 +13,16 @@
 ///   - a finding of the same thing (the mean, or the level of the noise) that gains three times as much is doubted;
 ///   - a level of noise predicts the recordings worse than a profile of the noise's power against a quantity does that
 ///     was measured without it;
+///   - a mean effect, and all others of its channel together, predict the recordings worse than a profile of the mean
+///     against one quantity does;
 ///   - a clock that is off all the time is found where one that breaks is not ruled out (`kClockMayBreak`);
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
 ///     a mean effect is doubted by a change that a mean can make, and by none that shows less than a third of its gain;
 ///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;
 ///   - a profile without a name (unnamed/unnamed_search.hpp) of what the finding is of (the mean, the level or the
-///     spectrum of the noise) shows itself and predicts at least a third as much as the finding does.
+///     spectrum of the noise) shows itself and predicts at least a third as much as the finding does; of tails, a
+///     profile of the mean too, for what a mean displaces lies in the tails.
 /// Facts of a file and faults of a recording are never doubted.
 #include "core/investigate/report/remains.hpp"
 #include "core/investigate/report/report.hpp"
@@ -37,9 +40,12 @@ namespace driftlab::investigate {
 /// What may be there instead of what was found.
 struct Instead {
   std::vector<UnnamedFinding> beside;                ///< profiles beside the findings (find_unnamed)
-  std::vector<UnnamedFinding> levels;                ///< in place of levels of noise (find_levels_instead)
+  std::vector<UnnamedFinding> instead;               ///< in place of levels of noise and mean effects (find_instead)
   std::vector<const StudyRecording*> suspects = {};  ///< suspects_of
 };
+
+/// Whether profiles of that kind are asked whether they predict more than the finding does.
+[[nodiscard]] bool may_be_a_profile(const Evidence& evidence, UnnamedKind kind);
 
 /// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of
 /// failed checks.

@@ -94,7 +94,7 @@ struct GivenEffect {
 
 /// What a profile without a name is of, and what it goes with (unnamed_effect.hpp).
 enum class UnnamedKind { Spectrum, Variance, Mean };
-enum class Against { Frequency, Time, Phase, Rate, RateChange, Temperature, Angle };
+enum class Against { Frequency, Time, Phase, Rate, RateChange, Temperature, Warming, Angle };
 
 /// An effect that a model holds and nobody has a name for: a measured profile, `value[k]` between `edge[k]` and
 /// `edge[k + 1]`.

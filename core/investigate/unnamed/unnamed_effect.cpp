@@ -23,13 +23,14 @@ struct AgainstWords {
   Against against;
   std::string_view name, words;
 };
-constexpr std::array<AgainstWords, 7> kAgainst{
+constexpr std::array<AgainstWords, 8> kAgainst{
     {{Against::Frequency, "frequency", "the frequency"},
      {Against::Time, "time", "the time since the start of the recording"},
      {Against::Phase, "phase", "the time within its period"},
      {Against::Rate, "rate", "the rate about the axis"},
      {Against::RateChange, "angular_acceleration", "the angular acceleration about the axis"},
      {Against::Temperature, "temperature", "the temperature"},
+     {Against::Warming, "warming", "the rate at which the temperature changes"},
      {Against::Angle, "angle", "the angle that the unit is turned to"}}};
 
 template <class List, class Key>
@@ -41,6 +42,28 @@ const auto& entry_of(const List& list, Key key) {
       return entry.first == key;
     }
   });
+}
+
+/// The slope of the temperature between its means over the four seconds before and after, for thermometers are coarse
+/// [K/s].
+Series warming_of(const StudyRecording& recording) {
+  constexpr double kMeanOver = 4.0;  // [s], chosen, not measured
+  const std::size_t n = recording.temperature.size();
+  const auto width = static_cast<std::size_t>(std::lround(kMeanOver / recording.dt_s));
+  if (width == 0 || n < 2 * width) {
+    return {};
+  }
+  std::vector<double> sum(n + 1, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    sum[i + 1] = sum[i] + recording.temperature[i];
+  }
+  std::vector<double> slope(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t at = std::clamp(i, width, n - width);
+    slope[i] = (sum[at + width] - 2.0 * sum[at] + sum[at - width]) / std::pow(static_cast<double>(width), 2.0) /
+               recording.dt_s;
+  }
+  return slope;
 }
 
 }  // namespace
@@ -83,6 +106,8 @@ ProfileUnit unit_of(Against against) {
       return {"deg/s^2", 1.0 / kDegree, 0.0};
     case Against::Temperature:
       return {"degC", 1.0, kCelsius};
+    case Against::Warming:
+      return {"degC/min", 60.0, 0.0};
     case Against::Angle:
       break;
   }
@@ -126,6 +151,8 @@ Series course_of(Against against, const StudyRecording& recording, std::size_t a
       return recording.acceleration[axis];
     case Against::Temperature:
       return recording.temperature;
+    case Against::Warming:
+      return warming_of(recording);
     case Against::Angle: {
       std::vector<double> angle = recording.angle.values();
       for (double& value : angle) {

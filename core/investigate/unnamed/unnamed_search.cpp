@@ -29,7 +29,8 @@ constexpr double kCut = 5.0;                       ///< innovations: gross value
 constexpr double kPassed = 0.05;  ///< of the white noise: what a band limit leaves less of is the last digit's rounding
 constexpr double kBlockRateHz = 5.0;  ///< of the means
 
-constexpr std::array kQuantities{Against::Rate, Against::RateChange, Against::Temperature, Against::Angle};
+constexpr std::array kQuantities{Against::Rate, Against::RateChange, Against::Temperature, Against::Warming,
+                                 Against::Angle};
 
 struct Candidate {
   UnnamedEffect effect;
@@ -85,11 +86,12 @@ class UnnamedSearch {
     return findings;
   }
 
-  std::vector<UnnamedFinding> levels() {
+  /// Those against the quantities alone, each beside none of the others.
+  std::vector<UnnamedFinding> against_quantities(UnnamedKind kind) {
     std::vector<UnnamedFinding> findings;
     tried_ = static_cast<double>(std::max<std::size_t>(courses_.size(), 1));
     for (const Courses& courses : courses_) {
-      const Candidate candidate = variance(courses);
+      const Candidate candidate = kind == UnnamedKind::Mean ? mean(courses) : variance(courses);
       if (candidate.gain > kAdopted + 2.0 * std::log(tried_)) {
         findings.push_back(finding_of(candidate));
       }
@@ -521,8 +523,8 @@ std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRa
   return UnnamedSearch(group, data, base).go();
 }
 
-std::vector<UnnamedFinding> find_levels_instead(const ChannelGroup& group, const FullRate& data) {
-  return UnnamedSearch(group, data, data.model.components.size()).levels();
+std::vector<UnnamedFinding> find_instead(const ChannelGroup& group, const FullRate& data, UnnamedKind kind) {
+  return UnnamedSearch(group, data, data.model.components.size()).against_quantities(kind);
 }
 
 }  // namespace driftlab::investigate

@@ -9,8 +9,9 @@
 /// Three kinds of profiles are tried (unnamed/unnamed_effect.hpp), each in all recordings together:
 ///   - the spectrum of the residuals over that of the model, in 14 or 42 bands of equal width in ln f or in 40 of
 ///     equal width in f, whichever predict best;
-///   - the mean square of the innovations against rate, angular acceleration, temperature and angle, in 12 bins with
-///     equal numbers of samples, and against time and against the phase of a period in each single recording;
+///   - the mean square of the innovations against rate, angular acceleration, temperature, its rate of change and
+///     angle, in 12 bins with equal numbers of samples, and against time and against the phase of a period in each
+///     single recording;
 ///   - the mean against the same, by generalised least squares on block means (slow/slow_fit.hpp).
 /// With bins b, estimates r_b and their variances v_b, a profile of ratios is drawn towards 1 by
 ///   r^_b = 1 + w_b (r_b - 1),   w_b = t^2/(t^2 + v_b),   t^2 = max(0, mean of (r_b - 1)^2 - v_b)
@@ -60,9 +61,10 @@ struct UnnamedFinding {
 [[nodiscard]] std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data,
                                                        std::size_t base);
 
-/// Profiles of the noise's power against rate, angular acceleration, temperature and angle that predict recordings as
-/// they are without the findings, `data`: what may be there in place of a level that was found. Those that would be
+/// Profiles of the mean or of the noise's power against the quantities, that predict recordings as they are without the
+/// findings, `data`: what may be there in place of a mean effect or of a level that was found. Those that would be
 /// adopted.
-[[nodiscard]] std::vector<UnnamedFinding> find_levels_instead(const ChannelGroup& group, const FullRate& data);
+[[nodiscard]] std::vector<UnnamedFinding> find_instead(const ChannelGroup& group, const FullRate& data,
+                                                       UnnamedKind kind);
 
 }  // namespace driftlab::investigate

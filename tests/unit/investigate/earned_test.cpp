@@ -148,16 +148,41 @@ TEST_F(Earned, ALevelThatAProfileSurpassesIsNot) {
   UnnamedFinding profile;
   profile.effect.kind = UnnamedKind::Variance;
   profile.effect.column = "gz";
+  profile.effect.kind = UnnamedKind::Variance;
   profile.heldout_gain = 48.0;
-  instead_.levels = {profile};
+  instead_.instead = {profile};
   EXPECT_EQ(doubt(level), "") << "no more than by chance";
-  instead_.levels[0].heldout_gain = 50.0;
+  instead_.instead[0].heldout_gain = 50.0;
   EXPECT_EQ(doubt(level), "noise that goes with a quantity predicts the recordings better");
   Evidence with_rate = level;
   with_rate.cause = find_cause("rate_dependent_noise");
   EXPECT_EQ(doubt(with_rate), "") << "it goes with a quantity itself";
-  instead_.levels[0].effect.column = "gx";
+  instead_.instead[0].effect.column = "gx";
   EXPECT_EQ(doubt(level), "") << "another channel's";
+}
+
+TEST_F(Earned, MeanEffectsThatAProfileOfTheMeanPredictsMoreThanAreNot) {
+  const auto beside = [&](UnnamedKind kind, double gain) {
+    std::vector<Evidence> found(2, evidence_of("temperature_bias"));
+    found[1].cause = find_cause("scale_factor_error");
+    for (Evidence& evidence : found) {
+      evidence.heldout = true;
+      evidence.heldout_gain = 20.0;
+    }
+    UnnamedFinding profile;
+    profile.effect.column = "gz";
+    profile.effect.kind = kind;
+    profile.heldout_gain = gain;
+    instead_.instead = {profile};
+    doubt_what_is_not_earned(groups_, {means_}, remains_, instead_, report_, found);
+    EXPECT_EQ(found[0].doubt, found[1].doubt);
+    return found[0].doubt;
+  };
+  EXPECT_EQ(beside(UnnamedKind::Mean, 50.0),
+            "a mean that goes with a quantity in another way predicts the recordings better");
+  EXPECT_EQ(beside(UnnamedKind::Mean, 48.0), "") << "no more than by chance";
+  EXPECT_EQ(beside(UnnamedKind::Mean, 30.0), "") << "more than each, less than both";
+  EXPECT_EQ(beside(UnnamedKind::Variance, 50.0), "") << "of another kind";
 }
 
 TEST_F(Earned, ALevelOfTheRecordingsThatTurnOneWayIsNot) {
