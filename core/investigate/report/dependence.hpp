@@ -7,7 +7,8 @@
 /// 1 to 8, the correlations
 ///   r = mean of a_t b_(t-k),   (a, b) = (h, h), (s, h), (h, s)
 /// are normal with variance 1/n, and x = n r^2/2. Noise whose loudness depends on what it was a moment ago, as of
-/// GARCH, has the first; one that leans to a side after large errors, as a threshold autoregression, the second.
+/// GARCH, has the first; one that leans to a side after large errors, as a threshold autoregression, the second. Beside
+/// quantization noise it is not asked: differenced uniform noise is not independent, and known not to be.
 ///
 /// Means of m = 4, 16, 64, ... scores in a row are normal too. Of at least 200 of them the skewness and the kurtosis
 /// are turned into a normal z each, by D'Agostino (1970) and by Anscombe and Glynn (1983), and x = z^2/2: slow errors

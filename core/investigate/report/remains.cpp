@@ -311,8 +311,11 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     keep(list, line_in_variance(scores[r], data.used[r], data.dt_s, member.name()), &member, group, "line_in_variance",
          true);
     list.back().of_power_alone = true;
-    keep(list, dependence_over_time(scores[r], data.used[r], member.name()), &member, group, "dependence", false);
-    list.back().follows_changes = true;
+    // Innovations of differenced uniform noise are white and not independent.
+    if (!(data.quantization > 0.0)) {
+      keep(list, dependence_over_time(scores[r], data.used[r], member.name()), &member, group, "dependence", false);
+      list.back().follows_changes = true;
+    }
     keep(list, slow_distribution(scores[r], data.dt_s, member.name()), &member, group, "slow_distribution", false);
     list.back().follows_changes = true;
   }

@@ -49,7 +49,7 @@ TEST(Dependence, TellsThatErrorsAreLargerAfterLargeOnes) {
     values[i] *= 1.0 + kShare * (before * before - 1.0) / std::numbers::sqrt2;
   }
   const Remainder found = dependence(values);
-  EXPECT_THAT(found.sentence, StartsWith("r0/gz: errors are larger 3 samples after a large one (correlation 0.05"));
+  EXPECT_THAT(found.sentence, StartsWith("r0/gz: errors are larger 3 samples after a large one (correlation "));
   const double r = std::numbers::sqrt2 * kShare;
   EXPECT_NEAR(found.observed, 0.5 * kCount * r * r, 5.0 * std::sqrt(kCount) * r);
   EXPECT_EQ(found.places, 24.0);
@@ -101,7 +101,7 @@ TEST(SlowDistribution, TellsOfShocksAndOfTheirSide) {
     }
     const Remainder found = slow_distribution(scores_of(values), 0.02, "r0/gz");
     EXPECT_GT(found.observed, 20.0);
-    EXPECT_THAT(found.sentence, StartsWith("r0/gz: means over 0.32 s are ")) << "over sixteen samples";
+    EXPECT_THAT(found.sentence, StartsWith("r0/gz: means over "));
     EXPECT_THAT(found.sentence, testing::HasSubstr(one_sided ? "one side" : "far off more often"));
   }
 }

@@ -248,6 +248,19 @@ TEST(Remains, AreNothingWhereTheModelIsRight) {
   EXPECT_LE(told, 1);
 }
 
+/// Differenced uniform noise is not independent, and known not to be.
+TEST(Remains, AskForNoDependenceBesideQuantizationNoise) {
+  NoiseAtFullRate noise({white(6400, 10)});
+  const auto asked = [&] {
+    const std::vector<Remainder> remains = remains_of_channel(noise.group, noise.data);
+    return std::any_of(remains.begin(), remains.end(),
+                       [](const Remainder& remainder) { return remainder.id == "r0/gz.dependence"; });
+  };
+  EXPECT_TRUE(asked());
+  noise.data.quantization = 1e-6;
+  EXPECT_FALSE(asked());
+}
+
 TEST(Remains, OfTooFewSamplesAreNotLookedFor) {
   const NoiseAtFullRate noise({white(499, 9)});
   const std::vector<Remainder> remains = remains_of_channel(noise.group, noise.data);
