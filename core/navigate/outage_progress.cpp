@@ -30,18 +30,18 @@ std::optional<double> taken_number(std::string_view& text, std::string_view end)
 
 /// "M_stat(AV) 12 m [10, 14]" off the beginning of `text`: the number begins behind the last space before " m [".
 std::optional<OutagesSoFar::Filter> taken_filter(std::string_view& text) {
-  const auto named = taken(text, " m [");
-  const std::size_t space = named ? named->rfind(' ') : std::string_view::npos;
+  const std::string_view named = taken(text, " m [").value_or(std::string_view());
+  const std::size_t space = named.rfind(' ');
   if (space == std::string_view::npos || space == 0) {
     return std::nullopt;
   }
-  const auto value = parse_double(named->substr(space + 1));
+  const auto value = parse_double(named.substr(space + 1));
   const auto low = taken_number(text, ", ");
   const auto high = taken_number(text, "]");
   if (!value || !low || !high) {
     return std::nullopt;
   }
-  return OutagesSoFar::Filter{std::string(named->substr(0, space)), {*value, {*low, *high}}};
+  return OutagesSoFar::Filter{std::string(named.substr(0, space)), {*value, {*low, *high}}};
 }
 
 }  // namespace
