@@ -1678,7 +1678,7 @@ class InvestigationUnexplainedItem(TypedDict):
 
 class InvestigationUnnamedItem(TypedDict):
     kind: Literal['spectrum', 'variance', 'mean']
-    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'warming', 'angle']
     # Of a phase: the time since the start of the recording, modulo this.
     period_s: NotRequired[float]
     # The unit of the edges.
@@ -2242,7 +2242,7 @@ class ModelProfile(TypedDict):
     kind: Literal['spectrum', 'variance', 'mean']
     # What the profile goes with; a spectrum with frequency, the others with the rest. A phase is the time since the
     # start of the recording, modulo `period_s`.
-    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'warming', 'angle']
     # Of a phase; needed there.
     period_s: NotRequired[float]
     # The unit of the edges: the one that belongs to `against`, whatever is written.
