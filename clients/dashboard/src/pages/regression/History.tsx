@@ -27,7 +27,10 @@ export function stripPlots(runs: readonly RegressionRun[]): Plot[] {
       id: verdict, name: verdict, x, y: value(test => test.ratio).map((ratio, j) => ordered[j]!.verdict === verdict ? ratio : null), low: value(test => test.ci[0]), high: value(test => test.ci[1]),
       mark: MARKS[verdict][0], colour: MARKS[verdict][1], noKey: i > 0,
     }));
-    const margin: Series = {id: 'margin', name: 'margin', x, y: value(test => test.margin), low: value(() => 1), high: value(test => test.margin), band: 'var(--robustband)', line: true, colour: 'var(--robust)', dash: '7 4', width: 1.2, noKey: i > 0};
+    // Runs that say nothing of the parameter do not break the margin.
+    const told = tests.flatMap((test, j) => test ? [{run: j + 1, limit: test.margin}] : []);
+    const limits = told.map(({limit}) => limit);
+    const margin: Series = {id: 'margin', name: 'margin', x: told.map(({run}) => run), y: limits, low: limits.map(() => 1), high: limits, band: 'var(--robustband)', line: true, colour: 'var(--robust)', dash: '7 4', width: 1.2, noKey: i > 0};
     const last = i === axes.length - 1;
     const far = Math.max(1.1, ...[...margin.y, ...value(test => test.ratio), ...value(test => test.ci[0]), ...value(test => test.ci[1])].filter(finite).map(ratio => ratio > 1 ? ratio : 1 / ratio));
     const limit = Math.min(far ** 1.15, 8);
