@@ -18,13 +18,14 @@ from urllib.parse import parse_qs
 
 import jsonschema
 import yaml
-from contract import closed
+from contract import bundle, closed
 from daemon import Daemon
 
 PROGRAM = os.environ["DRIFTLAB"]
 ROOT = Path(__file__).resolve().parents[2]
 DEPLOY = ROOT / "deploy/ci"
-VALIDATOR = jsonschema.Draft202012Validator(closed(json.loads((ROOT / "schema/regression.schema.json").read_text())))
+SCHEMAS = {path.name: json.loads(path.read_text()) for path in (ROOT / "schema").glob("*.schema.json")}
+VALIDATOR = jsonschema.Draft202012Validator(closed(bundle({"$ref": "regression.schema.json"}, SCHEMAS)))
 PATIENCE_S = 300
 
 
