@@ -212,7 +212,7 @@ TEST_P(CauseLaw, EquationIsALineOfPrintThatNamesEveryParameter) {
   const std::string equation(cause.equation);
   ASSERT_FALSE(equation.empty()) << cause.name << " declares no equation (Cause::equation)";
   EXPECT_EQ(equation.find_first_of("_^*\\$<>&`\n\t-"), std::string::npos) << equation;
-  EXPECT_NE(equation.find_first_of("="), std::string::npos) << equation;
+  EXPECT_NE(equation.find_first_of('='), std::string::npos) << equation;
   for (const CauseParameter& parameter : cause.parameters) {
     EXPECT_TRUE(has_word(equation, symbol_of(spoken_name(parameter.name)))) << parameter.name << ": " << equation;
   }
