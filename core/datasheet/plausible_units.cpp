@@ -27,8 +27,6 @@ struct Candidate {
   double factor = 1.0;  ///< SI in one of it
 };
 
-double median(std::vector<double> values) { return take_median(values); }
-
 /// What readings of that quantity may be in, beside the unit that is said: units, and counts of the sensor.
 std::vector<Candidate> candidates(Quantity quantity, const Unit& said, const std::optional<KnownSensor>& sensor) {
   std::vector<Candidate> all;
@@ -75,7 +73,7 @@ double median_length(const std::array<const ObservedChannel*, 3>& axes) {
   for (std::size_t i = 0; i < count; i += step) {
     lengths.push_back(std::hypot(axes[0]->samples[i], axes[1]->samples[i], axes[2]->samples[i]));
   }
-  return median(std::move(lengths));
+  return take_median(lengths);
 }
 
 void check_gravity(std::span<const ObservedChannel> channels, std::span<const std::string> hardware,
@@ -129,7 +127,7 @@ std::optional<double> robust_density(std::span<const double> samples, double dt_
     before = mean;
   }
   // The median of |x| of a normal x is 0.6745 of its deviation; a difference of two means has sqrt(2) of one.
-  const double deviation = median(std::move(steps)) / 0.6745 / std::numbers::sqrt2;
+  const double deviation = take_median(steps) / 0.6745 / std::numbers::sqrt2;
   const double density = deviation * std::sqrt(static_cast<double>(length) * dt_s);
   return density > 0.0 ? std::optional(density) : std::nullopt;
 }

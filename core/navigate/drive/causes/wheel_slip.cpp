@@ -45,8 +45,6 @@ std::vector<Compared> compared(const Drive& drive, double velocity_latency_s) {
   return list;
 }
 
-double median_of(std::vector<double> values) { return take_median(values); }
-
 }  // namespace
 
 double WheelSlips::seconds() const {
@@ -72,12 +70,13 @@ std::optional<WheelSlips> slips_of(const Drive& drive, double velocity_latency_s
     return std::nullopt;
   }
   WheelSlips found;
-  found.scale = median_of(ratios) - 1.0;
+  found.scale = take_median(ratios) - 1.0;
   std::vector<double> off;
   for (const Compared& one : all) {
     off.push_back(std::abs(one.odometer_m_s - (1.0 + found.scale) * one.speed_m_s));
   }
-  found.sd_m_s = kNormalOfMad * median_of(off);
+  std::vector<double> by_size = off;
+  found.sd_m_s = kNormalOfMad * take_median(by_size);
   const double limit = std::max(kRobustSd * found.sd_m_s, kLeastSlip);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (off[i] <= limit) {
