@@ -1,5 +1,7 @@
 #include "core/campaign/regression/ratios.hpp"
 
+#include "core/process/distributions.hpp"
+
 #include <cmath>
 
 namespace driftlab::regression {
@@ -8,7 +10,7 @@ namespace {
 
 Estimate deviation_of(const ArmMean& mean) {
   const auto at = [&](double deviations) { return std::sqrt(2.0) * std::exp(mean.x + deviations * mean.se); };
-  return {at(0.0), {at(-1.96), at(1.96)}};
+  return {at(0.0), {at(-kNormal975), at(kNormal975)}};
 }
 
 }  // namespace
