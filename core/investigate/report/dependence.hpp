@@ -16,7 +16,8 @@
 ///
 /// Of two axes of a recording, of which the correlation is rho, the correlation of h is rho^2; what it exceeds that by
 /// is tested alike, with k = 0.
-#include "core/investigate/report/remains.hpp"
+#include "core/investigate/report/remainder.hpp"
+#include "core/investigate/study/series.hpp"
 
 #include <string>
 #include <vector>

@@ -8,7 +8,6 @@
 #include "core/process/random.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -291,12 +290,6 @@ void keep(std::vector<Remainder>& list, Remainder remainder, const ChannelGroup:
 }
 
 }  // namespace
-
-std::string three_digits(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3);
-  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
-}
 
 std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data) {
   std::vector<Remainder> list;

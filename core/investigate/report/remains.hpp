@@ -22,6 +22,7 @@
 /// A test looks at many places and reports the one with the largest x, so the probability is multiplied by the number
 /// of places (Bonferroni). Places overlap: the product is too large rather than too small. To say it of the whole study
 /// it is multiplied once more, by the number of tests in the study.
+#include "core/investigate/report/remainder.hpp"
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/group_search.hpp"
 
@@ -29,26 +30,6 @@
 #include <vector>
 
 namespace driftlab::investigate {
-
-/// Departures with a p_study below this level are reported.
-inline constexpr double kShown = 0.003;
-
-/// One departure.
-struct Remainder {
-  std::string id;  ///< of its check
-  std::string recording;
-  std::string channel;
-  double observed = 0.0;  ///< the exponent: -ln of the chance at that place
-  double places = 1.0;
-  double p_study = 1.0;
-  bool in_time_or_frequency = false;  ///< bursts, lines and changes: what a named cause should have taken away
-  bool of_power_alone = false;        ///< a mean, however it moves, does not show in it
-  bool follows_changes = false;       ///< noise that changes in time shows in it too: told where nothing changes
-  std::string sentence;               ///< where it is, in words
-};
-
-/// For a sentence.
-[[nodiscard]] std::string three_digits(double value);
 
 /// The strongest departure of each test within one channel that has been searched, `p_study` still to be told.
 /// O(samples log samples). Deterministic.

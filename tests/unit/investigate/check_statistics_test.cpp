@@ -84,6 +84,8 @@ TEST(CheckStatistics, EachSeesWhatItIsThereFor) {
   EXPECT_TRUE(named(checks_of({louder}), "r0/gz.variance_over_time").failed);
   EXPECT_TRUE(named(checks_of({coloured}), "r0/gz.spectrum").failed);
   EXPECT_TRUE(named(checks_of({wandering}), "r0/gz.whiteness").failed);
+  EXPECT_TRUE(named(checks_of({wandering}), "r0/gz.whiteness").of_slow_misfit);
+  EXPECT_FALSE(named(checks_of({wandering}), "r0/gz.kurtosis").of_slow_misfit);
   EXPECT_TRUE(named(checks_of({wandering}), "r0/gz.wavelet_variance_20.5s").failed);
   const Check tails = named(checks_of({heavy}), "r0/gz.kurtosis");
   EXPECT_TRUE(tails.failed);

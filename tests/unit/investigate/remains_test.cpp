@@ -323,5 +323,30 @@ TEST(Remains, AreReportedThreeTimesAChannelAtMost) {
   EXPECT_EQ(report.failed_after, 4U);
 }
 
+/// Noise that changes in time is not independent from sample to sample either: the change says it all.
+TEST(Remains, OfDependenceAreNotReportedBesideAChangeInTime) {
+  Remainder follower = departure("gx", 40.0, 10.0, 1e-12);
+  follower.id = "r3/gx.dependence";
+  follower.follows_changes = true;
+  Remainder change = departure("gx", 30.0, 10.0, 1e-9);
+  change.in_time_or_frequency = true;
+  const auto reported = [&](const Remainder& beside) {
+    Report report;
+    report_remains({follower, beside}, report);
+    return std::any_of(report.checks.begin(), report.checks.end(),
+                       [&](const Check& check) { return check.id == follower.id; });
+  };
+  EXPECT_FALSE(reported(change));
+  Remainder elsewhere = change;
+  elsewhere.channel = "gz";
+  EXPECT_TRUE(reported(elsewhere)) << "of another channel";
+  Remainder chance = change;
+  chance.p_study = 0.01;
+  EXPECT_TRUE(reported(chance)) << "it is none";
+  Remainder mean = change;
+  mean.in_time_or_frequency = false;
+  EXPECT_TRUE(reported(mean)) << "of the mean";
+}
+
 }  // namespace
 }  // namespace driftlab::investigate
