@@ -90,6 +90,23 @@ run_tests() {
   ctest --test-dir "build/$name" --output-on-failure --no-tests=error --parallel "$jobs" "$@" ${only:+--tests-regex "$only"}
 }
 
+# failures TREE: what the tests of build/TREE that failed said of it, once more at the end, where no one must look for it
+failures() {
+  printf '\n== what failed\n'
+  awk '
+    /^[0-9]+\/[0-9]+ Test: / { name = substr($0, index($0, "Test: ") + 6); said = 0; wanted = 0; lines = 0; passed = 0 }
+    /^Test Passed\.|^Test Pass Reason:/ { passed = 1 }
+    /: Failure$|^\[  FAILED  \]|^(FAIL|ERROR): |^not ok |^Traceback|Sanitizer: / { wanted = 12 }
+    wanted > 0 { if (said < 60) failure[said++] = $0; wanted-- }
+    { last[lines++ % 30] = $0 }
+    /" end time: / && !passed {
+      printf "\n-- %s\n", name
+      for (i = 0; i < said; ++i) print failure[i]
+      if (said == 0) for (i = lines > 30 ? lines - 30 : 0; i < lines; ++i) print last[i % 30]
+    }
+  ' "build/$1/Testing/Temporary/LastTest.log"
+}
+
 tidy_sources() {
   quietly configure-tidy.log cmake --preset tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DDRIFTLAB_FUZZ=ON \
     -DCMAKE_CXX_COMPILER_LAUNCHER= || return 1
@@ -114,7 +131,7 @@ if [ "$tidy" = yes ]; then
 fi
 if [ "$sanitize" = yes ]; then
   for preset in asan-ubsan tsan; do
-    step "build $preset" build "$preset" all && step "test $preset" run_tests "$preset" --label-exclude 'long|house'
+    step "build $preset" build "$preset" all && { step "test $preset" run_tests "$preset" --label-exclude 'long|house' || failures "$preset"; }
   done
 fi
 
@@ -132,7 +149,7 @@ fi
 if [ "${#trees[@]}" -gt 0 ]; then
   mkdir -p build/all
   printf 'subdirs("%s")\n' "${trees[@]/#/$repository/build/}" >build/all/CTestTestfile.cmake
-  step "test" run_tests all "${labels[@]}"
+  step "test" run_tests all "${labels[@]}" || failures all
 fi
 if [ "$long" = yes ]; then
   step "accuracy page" python3 tests/accuracy/page.py "$DRIFTLAB_ACCURACY_DIR"
