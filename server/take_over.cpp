@@ -1,5 +1,6 @@
 #include "server/take_over.hpp"
 
+#include "schema/json/axis_glance.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/fault_recorder.hpp"
 #include "server/observe/log.hpp"
@@ -59,6 +60,13 @@ Status write_first_token(Gate& gate, const std::filesystem::path& path) {
   return {};
 }
 
+/// Of a document that cannot be read there is nothing to show.
+Glance glance_of_document(const std::string& document_json) {
+  const Json channel = Json::parse(document_json, nullptr, false);
+  const auto told = channel.is_object() ? told_glance(channel) : Result<ToldGlance>(ToldGlance{});
+  return told ? Glance{to_text(told->document), static_cast<int>(told->level)} : Glance{};
+}
+
 }  // namespace
 
 Status take_over(SqlStore& store, Coordination* others, const Settings& settings) {
@@ -67,6 +75,13 @@ Status take_over(SqlStore& store, Coordination* others, const Settings& settings
   }
   if (auto ended = end_leases_of_the_dead(store, others); !ended) {
     return ended;
+  }
+  const auto seen = store.keep_missing_glances(glance_of_document);
+  if (!seen) {
+    return fail(seen.error());
+  }
+  if (*seen > 0) {
+    log_info("results of an earlier release are shown in lists of devices", Json{{"results", *seen}});
   }
   const auto queued = store.queue_missing_pools();
   if (!queued) {

@@ -38,11 +38,4 @@ AxisGlance glance_of(const ReportedFit& fit, const std::optional<ReportedValue>&
   return glance;
 }
 
-bool tells_more(const AxisCandidate& candidate, const AxisCandidate& shown) {
-  if (candidate.at_rest != shown.at_rest) {
-    return candidate.at_rest;
-  }
-  return candidate.at_rest && candidate.level > shown.level;
-}
-
 }  // namespace driftlab

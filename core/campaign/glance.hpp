@@ -23,15 +23,4 @@ struct AxisGlance {
 /// for an older stored result that lacks it, and the N of the model's white noise is then used.
 [[nodiscard]] AxisGlance glance_of(const ReportedFit& fit, const std::optional<ReportedValue>& density);
 
-/// A result that may stand for its axis.
-struct AxisCandidate {
-  bool at_rest = false;
-  VerdictLevel level = VerdictLevel::Look;  ///< of its glance
-};
-
-/// Whether `candidate` replaces `shown` as the result that represents the axis. A result at rest replaces one in
-/// motion; of two at rest the one with the worse verdict level is shown, so that the list does not hide it; of two in
-/// motion the first stays.
-[[nodiscard]] bool tells_more(const AxisCandidate& candidate, const AxisCandidate& shown);
-
 }  // namespace driftlab

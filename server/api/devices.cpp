@@ -3,6 +3,9 @@
 #include "server/api/documents.hpp"
 #include "server/api/overviews.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace driftlab::server {
 namespace {
 
@@ -100,12 +103,27 @@ Result<Response> list_devices(ApiContext& context, const Request& request) {
     return fail(sought.error());
   }
   const DeviceFilter filter{std::move(*sought)};
+  DeviceOverviews overviews;
   return list_rows(
-      request, [&](const Page& page) { return context.store.devices(filter, page); },
+      request,
+      [&](const Page& page) -> Result<std::vector<Device>> {
+        auto devices = context.store.devices(filter, page);
+        if (devices && include) {
+          std::vector<std::string> ids;
+          std::ranges::transform(*devices, std::back_inserter(ids), &Device::id);
+          auto found = context.store.overviews(ids);
+          if (!found) {
+            return fail(found.error());
+          }
+          overviews = std::move(*found);
+        }
+        return devices;
+      },
       [&](const Device& device) {
         Json document = to_json(device);
-        if (include) {
-          document["summary"] = device_summary(context.store, device.id).value_or(Json(nullptr));
+        if (include) {  // a device that was removed since the page was read has none
+          const auto overview = overviews.find(device.id);
+          document["summary"] = overview != overviews.end() ? device_summary(overview->second) : Json(nullptr);
         }
         return document;
       });

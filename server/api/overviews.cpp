@@ -1,46 +1,30 @@
 // What stands on the front of a lab: how much there is, and how each device is.
 #include "server/api/overviews.hpp"
 
-#include "core/campaign/glance.hpp"
 #include "core/signal/condition.hpp"
 #include "schema/json/recording_spec.hpp"
-#include "schema/json/reported_channel.hpp"
 #include "schema/json/stored_member.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/message.hpp"
 
-#include <map>
 #include <utility>
 
 namespace driftlab::server {
 namespace {
-
-constexpr int kMostFits = 500;
 
 Json condition_json(const std::string& text) {
   const auto condition = parse_condition(text);
   return condition ? driftlab::to_json(*condition) : Json(nullptr);
 }
 
-/// The best fit of an axis under one condition, with what it says at a glance.
-struct AxisResult {
-  const Fit* fit = nullptr;
-  AxisGlance glance;
-  [[nodiscard]] AxisCandidate candidate() const { return {fit->condition == "static", glance.level}; }
-};
-
-Json to_json(const AxisResult& axis) {
-  const Fit& fit = *axis.fit;
-  return Json{{"quantity", fit.quantity},
-              {"axis", text_or_null(fit.axis)},
-              {"recording", fit.recording_id},
-              {"condition", condition_json(fit.condition)},
-              {"model", fit.model},
-              {"N", driftlab::to_json(axis.glance.density)},
-              {"fits", axis.glance.fits ? Json(*axis.glance.fits) : Json(nullptr)},
-              {"level", name_of(axis.glance.level)},
-              {"reason", text_or_null(axis.glance.reason)}};
+Json to_json(const ShownResult& shown) {
+  Json document{{"quantity", shown.quantity},
+                {"axis", text_or_null(shown.axis)},
+                {"recording", shown.recording_id},
+                {"condition", condition_json(shown.condition)}};
+  document.update(stored(shown.glance_json));
+  return document;
 }
 
 /// The page of the API that holds what the verdict rests on.
@@ -119,8 +103,8 @@ Result<Response> get_counts(ApiContext& context, const Request& request) {
 }
 
 /// The newest result of a device: by the verdicts that are kept, or a characterisation of before all of them were.
-Json newest_result(const ResultVerdict* said, const Fit* fit) {
-  if (said != nullptr && (fit == nullptr || said->created_at >= fit->created_at)) {
+Json newest_result(const std::optional<ResultVerdict>& said, const std::optional<ChannelResult>& newest) {
+  if (said && (!newest || said->created_at >= newest->created_at)) {
     return Json{{"kind", said->kind},
                 {"id", !said->recording_id.empty()       ? said->recording_id
                        : !said->investigation_id.empty() ? said->investigation_id
@@ -132,15 +116,15 @@ Json newest_result(const ResultVerdict* said, const Fit* fit) {
                 {"level", said->level},
                 {"verdict", said->verdict}};
   }
-  if (fit == nullptr) {
+  if (!newest) {
     return nullptr;
   }
   return Json{{"kind", "characterise"},
-              {"id", fit->recording_id},
-              {"href", "/v1/recordings/" + fit->recording_id + "/characterisation"},
-              {"job", fit->job_id},
-              {"recording", fit->recording_id},
-              {"at", rfc3339(fit->created_at)},
+              {"id", newest->recording_id},
+              {"href", "/v1/recordings/" + newest->recording_id + "/characterisation"},
+              {"job", newest->job_id},
+              {"recording", newest->recording_id},
+              {"at", rfc3339(newest->created_at)},
               {"level", nullptr},
               {"verdict", nullptr}};
 }
@@ -150,65 +134,34 @@ Result<Response> get_summary(ApiContext& context, const Request& request) {
   if (!device) {
     return fail(device.error());
   }
-  auto summary = device_summary(context.store, device->id);
-  if (!summary) {
-    return fail(summary.error());
+  const auto found = context.store.overviews({device->id});
+  if (!found) {
+    return fail(found.error());
   }
-  return json_response(200, *summary);
+  const auto overview = found->find(device->id);
+  if (overview == found->end()) {
+    return fail(ErrorCode::NotFound, "There is no device \"" + device->id + "\".");
+  }
+  return json_response(200, device_summary(overview->second));
 }
 
 }  // namespace
 
-Result<Json> device_summary(Store& store, const std::string& device_id) {
-  auto conditions = store.conditions_of(device_id);
-  if (!conditions) {
-    return fail(conditions.error());
-  }
-  FitFilter filter;
-  filter.device_id = device_id;
-  filter.best_only = true;
-  filter.latest_only = true;
-  auto fits = store.fits(filter, Page{"", kMostFits});
-  if (!fits) {
-    return fail(fits.error());
-  }
-  VerdictFilter any;
-  any.device_id = device_id;
-  any.to_read = false;
-  const auto said = store.verdicts(any, Page{"", 1, PageOrder::NewestFirst});
-  if (!said) {
-    return fail(said.error());
-  }
-  std::map<std::pair<std::string, std::string>, AxisResult> axes;
-  const Fit* newest = nullptr;
-  for (const Fit& fit : *fits) {
-    const auto read = stored_fit_from_json(stored(fit.document_json));
-    if (!read) {
-      return fail(read.error());
-    }
-    AxisResult found{&fit, glance_of(read->fit, read->density)};
-    AxisResult& shown = axes[{fit.quantity, fit.axis}];
-    if (shown.fit == nullptr || tells_more(found.candidate(), shown.candidate())) {
-      shown = std::move(found);
-    }
-    if (newest == nullptr || fit.created_at > newest->created_at) {
-      newest = &fit;
-    }
-  }
+Json device_summary(const DeviceOverview& overview) {
   std::int64_t recordings = 0;
   Json kinds = Json::array();
-  for (const ConditionCount& one : *conditions) {
+  for (const ConditionCount& one : overview.conditions) {
     recordings += one.recordings;
     kinds.push_back(Json{{"condition", condition_json(one.condition)}, {"recordings", one.recordings}});
   }
   Json channels = Json::array();
-  for (const auto& [axis, shown] : axes) {
+  for (const ShownResult& shown : overview.axes) {
     channels.push_back(to_json(shown));
   }
   return Json{{"recordings", recordings},
               {"conditions", std::move(kinds)},
               {"channels", std::move(channels)},
-              {"latest", newest_result(said->empty() ? nullptr : &said->front(), newest)}};
+              {"latest", newest_result(overview.verdict, overview.newest)}};
 }
 
 void add_overview_routes(Router& router, ApiContext& context) {

@@ -4,11 +4,9 @@
 #include "schema/json/json.hpp"
 #include "server/store/store.hpp"
 
-#include <string>
-
 namespace driftlab::server {
 
-/// The document of GET /v1/devices/{id}/summary. Errors: those of the store.
-[[nodiscard]] Result<Json> device_summary(Store& store, const std::string& device_id);
+/// The document of GET /v1/devices/{id}/summary.
+[[nodiscard]] Json device_summary(const DeviceOverview& overview);
 
 }  // namespace driftlab::server

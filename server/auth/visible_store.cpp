@@ -94,11 +94,9 @@ class VisibleStore final : public Store {
   Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override {
     return whole_.recordings(filter, limited(page));
   }
-  Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) override {
-    if (auto seen = see_device(device_id, "device", device_id); !seen) {
-      return fail(seen.error());
-    }
-    return whole_.conditions_of(device_id);
+  Result<DeviceOverviews> overviews(const std::vector<std::string>& device_ids,
+                                    const std::optional<Visibility>& /*visible*/) override {
+    return whole_.overviews(device_ids, limits());
   }
   Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) override {
     if (auto found = recording(changed.id); !found) {

@@ -7,6 +7,7 @@
 
 #include "core/analysis/characterise_campaign.hpp"
 #include "core/analysis/told_characterisation.hpp"
+#include "schema/json/axis_glance.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -212,6 +213,9 @@ class Characterise final : public JobKind {
       row.document_json = to_text(told);
       row.settings_json = to_text(settings);
       row.created_at = now;
+      if (const auto glance = told_glance(told)) {
+        row.glance = {to_text(glance->document), static_cast<int>(glance->level)};
+      }
       for (std::size_t rank = 0; rank < channel.result.fits.size(); ++rank) {
         Fit fit;
         fit.id = make_id("fit", now);

@@ -4,6 +4,7 @@
 #include "server/store/clock.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -113,6 +114,15 @@ struct JobEvent {
   UtcMicros at = 0;
 };
 
+/// What a list of devices shows of a channel's result.
+struct Glance {
+  std::string json = "null";  ///< null: there is nothing to show
+  int level = 0;              ///< the higher, the more a person must read it
+};
+
+/// The glance of a stored result, by its document.
+using GlanceOf = std::function<Glance(const std::string& document_json)>;
+
 /// The characterisation of one channel as a job found it.
 struct ChannelResult {
   std::string id;  ///< `chr_...`
@@ -127,6 +137,7 @@ struct ChannelResult {
   std::string document_json;  ///< one member of `channels`, spec/results.md
   std::string settings_json;  ///< models, seed, algorithm version, instruction set
   UtcMicros created_at = 0;
+  Glance glance = {};  ///< written only
 };
 
 /// One model fitted to one channel.
@@ -152,6 +163,7 @@ struct SensorAxis {
   std::string device_id;
   std::string quantity;
   std::string axis;
+  bool operator==(const SensorAxis&) const = default;
 };
 
 /// One sensor axis as it stands, at one moment.

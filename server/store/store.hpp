@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,25 @@ struct ConditionCount {
   std::string condition;  ///< compact text form
   std::int64_t recordings = 0;
 };
+
+/// The result that stands for its axis in a list of devices: of the latest result per recording and channel one at rest
+/// before one in motion; of those at rest one of the highest level, so that the list does not hide it; else the first.
+struct ShownResult {
+  std::string quantity;
+  std::string axis;
+  std::string recording_id;
+  std::string condition;
+  std::string glance_json;
+};
+
+/// What a list of devices shows of one.
+struct DeviceOverview {
+  std::vector<ConditionCount> conditions = {};         ///< each once, in the order of their text
+  std::vector<ShownResult> axes = {};                  ///< by quantity and axis
+  std::optional<ResultVerdict> verdict = {};           ///< the newest
+  std::optional<ChannelResult> newest = std::nullopt;  ///< the newest: its job, recording and time
+};
+using DeviceOverviews = std::map<std::string, DeviceOverview, std::less<>>;  ///< by id
 
 /// What is kept for a device.
 struct DeviceUsage {
@@ -213,8 +233,9 @@ class Store {
   [[nodiscard]] virtual Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
-  /// The conditions of a device's recordings, each once, in the order of their text.
-  [[nodiscard]] virtual Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) = 0;
+  /// Of the devices of those ids that are there, at one moment: in one read of each table for all of them.
+  [[nodiscard]] virtual Result<DeviceOverviews> overviews(const std::vector<std::string>& device_ids,
+                                                          const std::optional<Visibility>& visible = std::nullopt) = 0;
   /// New metadata, one revision higher, if revision and tags are still those that were read. What its results took part
   /// in is pooled anew without them. New tags alone are no new revision, and results stay. NotFound; Conflict.
   [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& recording,

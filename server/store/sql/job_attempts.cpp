@@ -205,7 +205,10 @@ Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const Jo
   Status written = insert_results(connection, lease.job_id, results, now);
   if (written && !results.channels.empty()) {
     const auto axes = axes_of_job(connection, lease.job_id);
-    written = axes ? refresh_pools(connection, *axes, now).map([](int) {}) : fail(axes.error());
+    written = axes ? show_results(connection, *axes) : fail(axes.error());
+    if (written) {
+      written = refresh_pools(connection, *axes, now).map([](int) {});
+    }
   }
   Result<LeaseStatus> finished = moved(connection, std::move(written), lease, status.cancel_requested, now);
   crash_point("job.in_finish");

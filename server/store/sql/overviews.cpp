@@ -15,11 +15,7 @@ constexpr std::string_view kEndedSince =
     "SELECT coalesce(sum(CASE WHEN state = 'succeeded' THEN 1 ELSE 0 END), 0), "
     "coalesce(sum(CASE WHEN state IN ('failed', 'dead') THEN 1 ELSE 0 END), 0) FROM jobs "
     "WHERE finished_at >= ? AND kind <> 'pool'";
-constexpr std::string_view kSelectVerdict =
-    "SELECT id, job_id, (SELECT kind FROM jobs WHERE jobs.id = verdicts.job_id), coalesce(device_id, ''), "
-    "coalesce(recording_id, ''), channel, level, verdict, coalesce((SELECT investigations.id FROM investigations WHERE "
-    "investigations.job_id = verdicts.job_id), ''), coalesce((SELECT devices.name FROM devices WHERE devices.id = "
-    "device_id), ''), created_at FROM verdicts";
+constexpr std::string_view kSelectVerdict = "SELECT " DRIFTLAB_VERDICT_COLUMNS " FROM verdicts";
 constexpr std::string_view kForgetRecording = "DELETE FROM verdicts WHERE recording_id = ?";
 /// ?2 the job. A result that speaks of no device by itself is that of the only one which its job names.
 constexpr std::string_view kInsertVerdict =
@@ -30,12 +26,12 @@ std::optional<std::string> some(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::string>(text);
 }
 
+}  // namespace
+
 ResultVerdict read_verdict(const Statement& row) {
   return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4),    row.text(5),
           row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)};
 }
-
-}  // namespace
 
 Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible) {
   const std::string jobs = "(SELECT count(*) FROM jobs WHERE state = ? AND " + std::string(kVisibleJob) + ")";

@@ -26,10 +26,12 @@ constexpr std::string_view kTakePlace = "UPDATE jobs SET run_at = ?2 WHERE id = 
 constexpr std::string_view kEveryAxis =
     "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE axis <> '' "
     "UNION SELECT device_id, quantity, axis FROM pools";
+/// Also those that results of before have, of recordings whose columns had another meaning then.
 constexpr std::string_view kAxesOfJob =
-    "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE axis <> '' AND job_id = ?";
+    "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE recording_id IN (SELECT recording_id FROM "
+    "channel_results WHERE job_id = ?)";
 constexpr std::string_view kAxesOfRecording =
-    "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE axis <> '' AND recording_id = ?";
+    "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE recording_id = ?";
 
 std::string read_text(const Statement& row) { return row.text(0); }
 
@@ -116,6 +118,9 @@ Result<bool> refresh_pool(Connection& connection, const SensorAxis& axis, UtcMic
 Result<int> refresh_pools(Connection& connection, const std::vector<SensorAxis>& axes, UtcMicros now) {
   int queued = 0;
   for (const SensorAxis& axis : axes) {
+    if (axis.axis.empty()) {
+      continue;  // channels without an axis are not pooled
+    }
     const Result<bool> refreshed = refresh_pool(connection, axis, now);
     if (!refreshed) {
       return fail(refreshed.error());

@@ -34,8 +34,6 @@ constexpr std::string_view kUsageOfToken =
     "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE owners.token_id = ?1";
 constexpr std::string_view kBlobBytes = "SELECT coalesce(sum(bytes), 0) FROM blobs";
 constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
-constexpr std::string_view kConditionsOf =
-    "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
     "updated_at, tags_json, file_name, name) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
@@ -278,6 +276,9 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
       return removed;
     }
   }
+  if (Status shown = show_results(connection, *axes); !shown) {
+    return shown;
+  }
   return refresh_pools(connection, *axes, now).map([](int) {});
 }
 
@@ -291,12 +292,6 @@ Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256)
     return fail(removed.error());
   }
   return connection.changes() > 0;
-}
-
-Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id) {
-  Statement statement = connection.prepare(kConditionsOf);
-  statement.bind(device_id);
-  return all_rows(statement, +[](const Statement& row) { return ConditionCount{row.text(0), row.integer(1)}; });
 }
 
 }  // namespace driftlab::server::tables

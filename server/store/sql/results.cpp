@@ -7,7 +7,9 @@ constexpr std::string_view kInsertDocument =
     "INSERT INTO job_results (job_id, document_json, created_at) VALUES (?, ?, ?)";
 constexpr std::string_view kInsertChannel =
     "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
-    "condition, document_json, settings_json, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "condition, document_json, settings_json, created_at, glance_json, glance_level) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
+    "?, "
+    "?, ?, ?, ?, ?)";
 constexpr std::string_view kInsertFit =
     "INSERT INTO fits (id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
     "axis, condition, model, rank, document_json, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
@@ -77,7 +79,8 @@ ChannelResult read_channel(const Statement& row) {
 Status insert_channel(Connection& connection, std::string_view job_id, const ChannelResult& channel, UtcMicros now) {
   return connection.prepare(kInsertChannel)
       .bind(channel.id, job_id, channel.device_id, channel.recording_id, channel.recording_revision, channel.channel,
-            channel.quantity, channel.axis, channel.condition, channel.document_json, channel.settings_json, now)
+            channel.quantity, channel.axis, channel.condition, channel.document_json, channel.settings_json, now,
+            channel.glance.json, channel.glance.level)
       .run();
 }
 

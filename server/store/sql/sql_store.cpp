@@ -153,8 +153,9 @@ Result<bool> SqlStore::is_owner(std::string_view object, std::string_view token)
   return database_->read([&](Connection& c) { return tables::is_owner(c, object, token); });
 }
 
-Result<std::vector<ConditionCount>> SqlStore::conditions_of(std::string_view device_id) {
-  return database_->read([&](Connection& c) { return tables::conditions_of(c, device_id); });
+Result<DeviceOverviews> SqlStore::overviews(const std::vector<std::string>& device_ids,
+                                            const std::optional<Visibility>& visible) {
+  return database_->read([&](Connection& c) { return tables::overviews(c, device_ids, visible); });
 }
 
 Result<Recording> SqlStore::revise_recording(const Recording& recording, std::int64_t expected_revision) {
@@ -303,6 +304,18 @@ Result<std::vector<ChannelResult>> SqlStore::latest_channel_results(std::string_
 
 Result<AxisResults> SqlStore::axis_results(const SensorAxis& axis) {
   return database_->read([&](Connection& c) { return tables::axis_results(c, axis); });
+}
+
+Result<int> SqlStore::keep_missing_glances(const GlanceOf& glance_of) {
+  int kept = 0;
+  while (true) {
+    const Result<int> some =
+        database_->write(WriteKind::Serial, [&](Connection& c) { return tables::keep_glances(c, glance_of); });
+    if (!some || *some == 0) {
+      return some ? Result<int>(kept) : some;
+    }
+    kept += *some;
+  }
 }
 
 Result<int> SqlStore::queue_missing_pools() {

@@ -37,6 +37,9 @@ class SqlStore : public Store {
   /// Bytes of everything that was uploaded and is still there.
   [[nodiscard]] Result<std::int64_t> blob_bytes();
 
+  /// For the start of a daemon: what results of an earlier release say at a glance. How many lacked it.
+  [[nodiscard]] Result<int> keep_missing_glances(const GlanceOf& glance_of);
+
   [[nodiscard]] Status ping() override;
 
   [[nodiscard]] std::uint64_t changes() const override;
@@ -59,7 +62,8 @@ class SqlStore : public Store {
   [[nodiscard]] Result<EndedCounts> ended_since(UtcMicros since, const std::optional<Visibility>& visible) override;
   [[nodiscard]] Result<bool> sees_job(std::string_view job, const Visibility& visible) override;
   [[nodiscard]] Result<bool> is_owner(std::string_view object, std::string_view token) override;
-  [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) override;
+  [[nodiscard]] Result<DeviceOverviews> overviews(const std::vector<std::string>& device_ids,
+                                                  const std::optional<Visibility>& visible) override;
   [[nodiscard]] Result<Recording> revise_recording(const Recording& recording, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_device(std::string_view id, std::int64_t expected_revision) override;

@@ -182,7 +182,8 @@ class FilteredQuery {
 [[nodiscard]] Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible);
 [[nodiscard]] Result<EndedCounts> ended_since(Connection& connection, UtcMicros since,
                                               const std::optional<Visibility>& visible);
-[[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id);
+[[nodiscard]] Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std::string>& device_ids,
+                                                const std::optional<Visibility>& visible);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
 [[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,
@@ -234,6 +235,13 @@ class FilteredQuery {
 // ---- what results come to
 [[nodiscard]] Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const VerdictFilter& filter,
                                                           const Page& page);
+/// The columns of a verdict, and one of them as it was read.
+#define DRIFTLAB_VERDICT_COLUMNS                                                                                      \
+  "id, job_id, (SELECT kind FROM jobs WHERE jobs.id = verdicts.job_id), coalesce(device_id, ''), "                    \
+  "coalesce(recording_id, ''), channel, level, verdict, coalesce((SELECT investigations.id FROM investigations "      \
+  "WHERE investigations.job_id = verdicts.job_id), ''), coalesce((SELECT devices.name FROM devices WHERE devices.id " \
+  "= verdicts.device_id), ''), created_at"
+[[nodiscard]] ResultVerdict read_verdict(const Statement& row);
 /// After the job's result document. What was said before of the recordings that they speak of is forgotten.
 [[nodiscard]] Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results,
                                      UtcMicros now);
@@ -241,9 +249,14 @@ class FilteredQuery {
 // ---- pooling of the results of an axis
 /// Makes the row of each axis name its latest results: what pooled others is cancelled, a job for these queued. How
 /// many were queued.
+/// Marks the results that stand for these axes.
+[[nodiscard]] Status show_results(Connection& connection, const std::vector<SensorAxis>& axes);
+/// Glances of some results that lack theirs, and the marks of their axes. How many; 0: none lacks it.
+[[nodiscard]] Result<int> keep_glances(Connection& connection, const GlanceOf& glance_of);
 [[nodiscard]] Result<int> refresh_pools(Connection& connection, const std::vector<SensorAxis>& axes, UtcMicros now);
 [[nodiscard]] Result<int> queue_missing_pools(Connection& connection, UtcMicros now);
 /// Named axes that have results of one job, of one recording.
+/// Axes of the recordings of a job's results, those without a name among them.
 [[nodiscard]] Result<std::vector<SensorAxis>> axes_of_job(Connection& connection, std::string_view job_id);
 [[nodiscard]] Result<std::vector<SensorAxis>> axes_of_recording(Connection& connection, std::string_view recording_id);
 /// Whether the results that the job was to pool are still the latest of their axis.

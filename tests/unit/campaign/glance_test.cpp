@@ -48,18 +48,5 @@ TEST(AxisGlance, HasTheDensityThatWasKeptAndOfOlderResultsTheModelsWhiteNoise) {
   EXPECT_EQ(glance_of(walk, std::nullopt).density.value, std::nullopt);
 }
 
-TEST(AxisGlance, RestOutranksMotionAndOfTwoAtRestTheOneToBeLookedAtShows) {
-  const AxisCandidate rest_fine{true, VerdictLevel::Fine};
-  const AxisCandidate rest_look{true, VerdictLevel::Look};
-  const AxisCandidate moving_fine{false, VerdictLevel::Fine};
-  const AxisCandidate moving_look{false, VerdictLevel::Look};
-  EXPECT_TRUE(tells_more(rest_fine, moving_look));
-  EXPECT_FALSE(tells_more(moving_look, rest_fine));
-  EXPECT_TRUE(tells_more(rest_look, rest_fine));
-  EXPECT_FALSE(tells_more(rest_fine, rest_look));
-  EXPECT_FALSE(tells_more(rest_look, rest_look));
-  EXPECT_FALSE(tells_more(moving_look, moving_fine)) << "the first condition that was seen stays";
-}
-
 }  // namespace
 }  // namespace driftlab

@@ -173,6 +173,36 @@ TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   EXPECT_EQ((*now)->axis_results(axis)->pool->state, JobState::Queued);
 }
 
+TEST(Migrations, ResultsOfAnEarlierReleaseAreSeenAtAGlance) {
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  {
+    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    ASSERT_TRUE((*old)->execute(
+        "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+        "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
+        "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0)"));
+    for (int i = 0; i < 150; ++i) {
+      ASSERT_TRUE((*old)->execute(recording_with_result(std::to_string(i))));
+    }
+  }
+  const auto now = open_with(directory.path(), embedded_migrations());
+  ASSERT_TRUE(now) << now.error().message;
+  Store& store = **now;
+  EXPECT_TRUE(store.overviews({"dev_1"})->at("dev_1").axes.empty());
+  int asked = 0;
+  const GlanceOf glance_of = [&](const std::string& document) {
+    EXPECT_EQ(document, "{}");
+    return ++asked == 1 ? Glance{} : Glance{std::to_string(asked), asked == 120 ? 1 : 0};
+  };
+  EXPECT_EQ(*(*now)->keep_missing_glances(glance_of), 150);
+  EXPECT_EQ(asked, 150);
+  ASSERT_EQ(store.overviews({"dev_1"})->at("dev_1").axes.size(), 1U);
+  EXPECT_EQ(store.overviews({"dev_1"})->at("dev_1").axes.front().glance_json, "120");
+  EXPECT_EQ(*(*now)->keep_missing_glances(glance_of), 0) << "they are kept";
+}
+
 TEST(Migrations, RecordingsOfAnEarlierReleaseHaveTheirNamesAndJobs) {
   const TemporaryDirectory directory;
   const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 9);
