@@ -375,7 +375,7 @@ TEST(Migrations, OneThatFailsLeavesTheDatabaseAsItWas) {
 }
 
 TEST(Migrations, AFullDiskStopsBeforeMigrating) {
-  const std::string said = on_small_disk((1 << 20) + (192 << 10), [](const std::filesystem::path& disk) -> std::string {
+  const std::string said = on_small_disk((1 << 20) + (240 << 10), [](const std::filesystem::path& disk) -> std::string {
     {
       const auto store = open_with(disk, embedded_migrations());
       if (!store) {

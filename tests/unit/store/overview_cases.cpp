@@ -90,7 +90,7 @@ TEST_P(OverviewStore, CountsConditionsAndKnowsTheNewestResultAndVerdict) {
   EXPECT_EQ(overview.newest->recording_id, turning_.id);
   EXPECT_EQ(overview.newest->created_at, clock_.now());
   ASSERT_EQ(overview.conditions.size(), 3U);
-  EXPECT_EQ(overview.conditions.front().condition, "constant_rate:z:9:deg/s");
+  EXPECT_EQ(overview.conditions.front().condition, "constant_rate:z:90:deg/s");
   EXPECT_EQ(overview.conditions.back().condition, "static");
   EXPECT_EQ(overview.conditions.back().recordings, 2);
 }
