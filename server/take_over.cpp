@@ -1,8 +1,8 @@
 #include "server/take_over.hpp"
 
-#include "schema/json/axis_glance.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/fault_recorder.hpp"
+#include "server/jobs/told_glance.hpp"
 #include "server/observe/log.hpp"
 #include "server/store/files.hpp"
 

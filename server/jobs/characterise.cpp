@@ -7,11 +7,11 @@
 
 #include "core/analysis/characterise_campaign.hpp"
 #include "core/analysis/told_characterisation.hpp"
-#include "schema/json/axis_glance.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_recordings.hpp"
+#include "server/jobs/told_glance.hpp"
 
 #include <map>
 #include <utility>

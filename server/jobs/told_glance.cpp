@@ -1,4 +1,4 @@
-#include "schema/json/axis_glance.hpp"
+#include "server/jobs/told_glance.hpp"
 
 #include "core/campaign/glance.hpp"
 #include "schema/json/reported_channel.hpp"
@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace driftlab {
+namespace driftlab::server {
 
 Result<ToldGlance> told_glance(const Json& channel) {
   const auto fits = channel.find("fits");
@@ -24,11 +24,11 @@ Result<ToldGlance> told_glance(const Json& channel) {
   }
   const AxisGlance glance = glance_of(read->fit, read->density);
   return ToldGlance{Json{{"model", read->fit.model},
-                         {"N", to_json(glance.density)},
+                         {"N", driftlab::to_json(glance.density)},
                          {"fits", glance.fits ? Json(*glance.fits) : Json(nullptr)},
-                         {"level", name_of(glance.level)},
+                         {"level", driftlab::name_of(glance.level)},
                          {"reason", text_or_null(glance.reason)}},
                     glance.level};
 }
 
-}  // namespace driftlab
+}  // namespace driftlab::server

@@ -3,7 +3,7 @@
 #include "core/campaign/verdict.hpp"
 #include "schema/json/json.hpp"
 
-namespace driftlab {
+namespace driftlab::server {
 
 /// `document`: {"model", "N", "fits", "level", "reason"}; null for a channel without fits.
 struct ToldGlance {
@@ -15,4 +15,4 @@ struct ToldGlance {
 /// driftlab has not written.
 [[nodiscard]] Result<ToldGlance> told_glance(const Json& channel);
 
-}  // namespace driftlab
+}  // namespace driftlab::server
