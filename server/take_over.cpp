@@ -63,8 +63,7 @@ Status write_first_token(Gate& gate, const std::filesystem::path& path) {
 /// Of a document that cannot be read there is nothing to show.
 Glance glance_of_document(const std::string& document_json) {
   const Json channel = Json::parse(document_json, nullptr, false);
-  const auto told = channel.is_object() ? told_glance(channel) : Result<ToldGlance>(ToldGlance{});
-  return told ? Glance{to_text(told->document), static_cast<int>(told->level)} : Glance{};
+  return channel.is_object() ? told_glance(channel).value_or(Glance{}) : Glance{};
 }
 
 }  // namespace

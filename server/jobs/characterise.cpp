@@ -213,9 +213,7 @@ class Characterise final : public JobKind {
       row.document_json = to_text(told);
       row.settings_json = to_text(settings);
       row.created_at = now;
-      if (const auto glance = told_glance(told)) {
-        row.glance = {to_text(glance->document), static_cast<int>(glance->level)};
-      }
+      row.glance = told_glance(told).value_or(Glance{});
       for (std::size_t rank = 0; rank < channel.result.fits.size(); ++rank) {
         Fit fit;
         fit.id = make_id("fit", now);

@@ -4,14 +4,12 @@
 #include "schema/json/reported_channel.hpp"
 #include "schema/json/stored_member.hpp"
 
-#include <utility>
-
 namespace driftlab::server {
 
-Result<ToldGlance> told_glance(const Json& channel) {
+Result<Glance> told_glance(const Json& channel) {
   const auto fits = channel.find("fits");
   if (fits == channel.end() || !fits->is_array() || fits->empty()) {
-    return ToldGlance{};
+    return Glance{};
   }
   Json best = fits->front();
   const auto coefficients = channel.find("allan_parameters");
@@ -23,12 +21,12 @@ Result<ToldGlance> told_glance(const Json& channel) {
     return fail(read.error());
   }
   const AxisGlance glance = glance_of(read->fit, read->density);
-  return ToldGlance{Json{{"model", read->fit.model},
-                         {"N", driftlab::to_json(glance.density)},
-                         {"fits", glance.fits ? Json(*glance.fits) : Json(nullptr)},
-                         {"level", driftlab::name_of(glance.level)},
-                         {"reason", text_or_null(glance.reason)}},
-                    glance.level};
+  const Json document{{"model", read->fit.model},
+                      {"N", driftlab::to_json(glance.density)},
+                      {"fits", glance.fits ? Json(*glance.fits) : Json(nullptr)},
+                      {"level", driftlab::name_of(glance.level)},
+                      {"reason", text_or_null(glance.reason)}};
+  return Glance{to_text(document), static_cast<int>(glance.level)};
 }
 
 }  // namespace driftlab::server
