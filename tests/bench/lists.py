@@ -85,9 +85,10 @@ def main() -> None:
         asked = lists(devices, recordings)
         took: dict[str, list[float]] = {name: [] for name in asked}
         rows: dict[str, int] = {}
-        changed = daemon.get("/v1/devices?limit=1").json["items"][0]["id"]
+        changed = "/v1/devices/" + daemon.get("/v1/devices?limit=1").json["items"][0]["id"]
         for i in range(REPEATS):
-            assert daemon.request("PATCH", f"/v1/devices/{changed}", {"serial": str(i)}).status == 200
+            revision = {"If-Match": daemon.get(changed).headers["etag"]}
+            assert daemon.request("PATCH", changed, {"serial": str(i)}, revision).status == 200
             for name, target in asked.items():
                 start = time.perf_counter()
                 answer = daemon.get(target(i))
