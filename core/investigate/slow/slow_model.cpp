@@ -3,6 +3,7 @@
 #include "core/investigate/slow/whitening_walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -34,6 +35,33 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
     gains.inv_sd.push_back(walk.inv_sd());
   }
   return gains;
+}
+
+/// One block of `width` series side by side: the innovation of each over its deviation, and its states behind the
+/// block, one after the other. `kStates`: how many there are where they are few, else 0.
+template <std::size_t kStates>
+void whiten_block(std::size_t states, std::size_t width, const double* __restrict in, const double* __restrict phi,
+                  const double* __restrict gain, double inv_sd, double* __restrict state, double* __restrict out) {
+  const std::size_t m = kStates > 0 ? kStates : states;
+  for (std::size_t c = 0; c < width; ++c) {
+    double v = in[c];
+    for (std::size_t i = 0; i < m; ++i) {
+      v -= state[i * width + c];
+    }
+    v = inv_sd > 0.0 ? v : 0.0;
+    out[c] = v * inv_sd;
+    for (std::size_t i = 0; i < m; ++i) {
+      state[i * width + c] = phi[i] * (state[i * width + c] + gain[i] * v);
+    }
+  }
+}
+
+using WhitenBlock = decltype(&whiten_block<0>);
+
+WhitenBlock whitening_of(std::size_t states) {
+  constexpr std::array<WhitenBlock, 5> kFew{whiten_block<0>, whiten_block<1>, whiten_block<2>, whiten_block<3>,
+                                            whiten_block<4>};
+  return states < kFew.size() ? kFew[states] : kFew[0];
 }
 
 }  // namespace
@@ -128,23 +156,14 @@ Whitened whiten(const BlockSeries& series, const SlowModel& model, const BlockCo
     std::vector<double>& out = result.columns.rows[r];
     out.assign(blocks.mean.size() * width, 0.0);
     const double* in = columns.rows[r].data();
+    const WhitenBlock whiten_one = whitening_of(m);
     double last_log = 0.0;
     std::size_t last_at = static_cast<std::size_t>(-1);
     for (std::size_t b = 0; b < blocks.mean.size(); ++b) {
       const std::size_t at = gains->at(b);
       const double inv_sd = gains->inv_sd[at];
-      const double* k = gains->gain.data() + at * m;
-      for (std::size_t c = 0; c < width; ++c) {
-        double v = in[b * width + c];
-        for (std::size_t i = 0; i < m; ++i) {
-          v -= state[i * width + c];
-        }
-        v = inv_sd > 0.0 ? v : 0.0;
-        out[b * width + c] = v * inv_sd;
-        for (std::size_t i = 0; i < m; ++i) {
-          state[i * width + c] = states.phi[i] * (state[i * width + c] + k[i] * v);
-        }
-      }
+      whiten_one(m, width, in + b * width, states.phi.data(), gains->gain.data() + at * m, inv_sd, state.data(),
+                 out.data() + b * width);
       if (inv_sd > 0.0) {
         if (at != last_at) {
           last_log = std::log(gains->variance[at]);

@@ -14,7 +14,7 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::array<std::size_t, 7> kTeeth{4, 8, 16, 32, 64, 128, 256};
+constexpr std::array<unsigned, 7> kDoublings{2, 3, 4, 5, 6, 7, 8};  ///< combs have 2^d teeth
 constexpr double kPeriods = 8.0;                            ///< in a recording, as the next three chosen, not measured
 constexpr double kCap = 20.0;                               ///< of an ordinate over its mean
 constexpr std::size_t kMostValues = std::size_t{1} << 18U;  ///< a day at 100 Hz would take a minute
@@ -99,7 +99,8 @@ std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::fu
   FoundPeriod best;
   best.tried = 0.0;
   double most = 0.0;
-  for (const std::size_t teeth : kTeeth) {
+  for (const unsigned doublings : kDoublings) {
+    const std::size_t teeth = std::size_t{1} << doublings;
     // Fundamentals in places of the spectrum; steps by which the last tooth moves one place.
     const double step = 1.0 / static_cast<double>(teeth);
     const auto first = static_cast<std::size_t>(2.0 * kPeriods / step);
@@ -107,7 +108,7 @@ std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::fu
     for (std::size_t j = first; j < end && !polled(stop, j); ++j) {
       double sum = 0.0;
       for (std::size_t k = 1; k <= teeth; ++k) {
-        sum += static_cast<double>(p[(k * j + teeth / 2) / teeth]);
+        sum += static_cast<double>(p[(k * j + teeth / 2) >> doublings]);
       }
       if (const double nats = nats_of(sum, static_cast<double>(teeth)); nats > most) {
         most = nats;
