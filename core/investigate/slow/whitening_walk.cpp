@@ -21,7 +21,21 @@ void WhiteningWalk::next(double filled) {
   if (settled_) {
     return;
   }
-  const std::size_t m = gain_.size();
+  switch (gain_.size()) {
+    case 1:
+      return advance<1>(filled);
+    case 2:
+      return advance<2>(filled);
+    case 3:
+      return advance<3>(filled);
+    default:
+      return advance<0>(filled);
+  }
+}
+
+template <std::size_t kStates>
+void WhiteningWalk::advance(double filled) {
+  const std::size_t m = kStates > 0 ? kStates : gain_.size();
   const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance_[i * m + j]; };
   std::fill(sum_.begin(), sum_.end(), 0.0);
   double s = 0.0;
@@ -35,8 +49,9 @@ void WhiteningWalk::next(double filled) {
     // A remainder more negative than the white part would be no variance at all; the floor keeps S positive.
     s += std::max(states_.white / filled + states_.remainder, 1e-6 * states_.white);
     for (std::size_t i = 0; i < m; ++i) {
-      for (std::size_t j = 0; j < m; ++j) {
+      for (std::size_t j = 0; j <= i; ++j) {
         p(i, j) -= sum_[i] * sum_[j] / s;
+        p(j, i) = p(i, j);
       }
     }
   }

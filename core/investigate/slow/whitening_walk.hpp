@@ -38,6 +38,10 @@ class WhiteningWalk {
   [[nodiscard]] double inv_sd() const { return inv_sd_; }                  ///< 1/sqrt(S); 0 for an empty block
 
  private:
+  /// `kStates`: how many there are where they are few, else 0.
+  template <std::size_t kStates>
+  void advance(double filled);
+
   const BlockStates& states_;
   bool uniform_;
   std::size_t width_;

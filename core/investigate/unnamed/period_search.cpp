@@ -105,16 +105,22 @@ std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::fu
     const double step = 1.0 / static_cast<double>(teeth);
     const auto first = static_cast<std::size_t>(2.0 * kPeriods / step);
     const auto end = static_cast<std::size_t>(places);  // where the last tooth is at the end of the spectrum
+    double largest = 0.0;
+    std::size_t at_largest = first;
     for (std::size_t j = first; j < end && !polled(stop, j); ++j) {
       double sum = 0.0;
       for (std::size_t k = 1; k <= teeth; ++k) {
         sum += static_cast<double>(p[(k * j + teeth / 2) >> doublings]);
       }
-      if (const double nats = nats_of(sum, static_cast<double>(teeth)); nats > most) {
-        most = nats;
-        best.teeth = teeth;
-        best.period_s = static_cast<double>(2 * n) * dt_s / (static_cast<double>(j) * step);
+      if (sum > largest) {
+        largest = sum;
+        at_largest = j;
       }
+    }
+    if (const double nats = nats_of(largest, static_cast<double>(teeth)); nats > most) {
+      most = nats;
+      best.teeth = teeth;
+      best.period_s = static_cast<double>(2 * n) * dt_s / (static_cast<double>(at_largest) * step);
     }
     best.tried += end > first ? 0.5 * static_cast<double>(end - first) : 0.0;
   }
