@@ -18,8 +18,11 @@
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <iterator>
 #include <map>
+#include <mutex>
 #include <numeric>
 
 namespace driftlab::investigate {
@@ -169,14 +172,36 @@ std::size_t first_shown(const Report& report, std::size_t group) {
   return 0;
 }
 
-/// What the report takes from the samples of the channels, group by group.
+/// What the report takes from the samples of a channel.
 struct Taken {
+  ChannelChecks checks;
+  std::vector<double> means;
+  MeasuredFigures figures;
+  std::vector<Remainder> remains;
+  std::vector<UnnamedFinding> unnamed;
+  std::vector<UnnamedFinding> instead;  ///< of levels of noise and mean effects that were found
+};
+
+/// The same of all channels, each list in their order.
+struct TakenOfAll {
   std::vector<ChannelChecks> checks;
   std::vector<std::vector<double>> means;
   std::vector<MeasuredFigures> figures;
-  std::vector<Remainder> remains;  ///< of all of them
+  std::vector<Remainder> remains;
   std::vector<UnnamedFinding> unnamed;
-  std::vector<UnnamedFinding> instead;  ///< of levels of noise and mean effects that were found
+  std::vector<UnnamedFinding> instead;
+
+  void add(Taken&& one) {
+    checks.push_back(std::move(one.checks));
+    means.push_back(std::move(one.means));
+    figures.push_back(std::move(one.figures));
+    const auto append = [](auto& all, auto& some) {
+      all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+    };
+    append(remains, one.remains);
+    append(unnamed, one.unnamed);
+    append(instead, one.instead);
+  }
 };
 
 /// The base beside the means that were found without a name. What is left of a process that had followed one of them,
@@ -210,31 +235,77 @@ void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcom
 
 /// Takes what is needed of a channel whose search has ended, and lets its samples go but for the innovations, which are
 /// compared with those of other channels.
-void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop_token& stop, Taken& taken) {
-  taken.checks.push_back(check_channel(group, outcome));
-  taken.means.push_back(means_of(outcome.before));
-  taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
-  for (const UnnamedKind kind : {UnnamedKind::Variance, UnnamedKind::Mean}) {
-    const bool asked = std::any_of(outcome.found.begin(), outcome.found.end(),
-                                   [&](const Evidence& evidence) { return may_be_a_profile(evidence, kind); });
-    if (asked && outcome.usable && !stop.stop_requested()) {
-      std::vector<UnnamedFinding> instead = find_instead(group, outcome.before, kind);
-      taken.instead.insert(taken.instead.end(), std::make_move_iterator(instead.begin()),
-                           std::make_move_iterator(instead.end()));
+Taken take_from(const ChannelGroup& group, GroupOutcome& outcome, const RunControl& control) {
+  Taken taken;
+  std::array<std::vector<UnnamedFinding>, 2> instead;
+  const auto profile = [&](UnnamedKind kind, std::vector<UnnamedFinding>& found) {
+    if (outcome.usable && std::any_of(outcome.found.begin(), outcome.found.end(),
+                                      [&](const Evidence& evidence) { return may_be_a_profile(evidence, kind); })) {
+      found = find_instead(group, outcome.before, kind);
     }
+  };
+  const std::array<std::function<void()>, 4> of_both{
+      [&] { taken.checks = check_channel(group, outcome); },
+      [&] { taken.figures = outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{}; },
+      [&] { profile(UnnamedKind::Variance, instead[0]); }, [&] { profile(UnnamedKind::Mean, instead[1]); }};
+  parallel_for(control.threads, of_both.size(), [&](std::size_t i) { of_both[i](); }, control.stop);
+  taken.means = means_of(outcome.before);
+  for (std::vector<UnnamedFinding>& found : instead) {
+    std::ranges::move(found, std::back_inserter(taken.instead));
   }
   outcome.before = {};
-  if (outcome.usable && !stop.stop_requested()) {
-    std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
-    std::vector<UnnamedFinding> unnamed =
-        find_unnamed(group, outcome.after, outcome.model.beside.noise.components.size());
-    take_refitted_noise(unnamed, outcome);
-    taken.unnamed.insert(taken.unnamed.end(), std::make_move_iterator(unnamed.begin()),
-                         std::make_move_iterator(unnamed.end()));
-    taken.remains.insert(taken.remains.end(), std::make_move_iterator(remains.begin()),
-                         std::make_move_iterator(remains.end()));
+  if (outcome.usable && !control.stop.stop_requested()) {
+    const std::array<std::function<void()>, 2> of_the_extended{
+        [&] { taken.remains = remains_of_channel(group, outcome.after); },
+        [&] { taken.unnamed = find_unnamed(group, outcome.after, outcome.model.beside.noise.components.size()); }};
+    parallel_for(control.threads, of_the_extended.size(), [&](std::size_t i) { of_the_extended[i](); }, control.stop);
+    take_refitted_noise(taken.unnamed, outcome);
   }
   outcome.after.residual.clear();
+  return taken;
+}
+
+/// Channels whose searches go on side by side, in studies of few rows: each takes its memory. Chosen: the axes of a
+/// sensor; server/jobs/investigate.cpp counts on both figures.
+constexpr std::size_t kSideBySide = 3;
+constexpr std::size_t kMostRowsSideBySide = 400'000;
+
+struct Searched {
+  GroupOutcome outcome;
+  Taken taken;
+};
+
+std::vector<Searched> search_all(const Study& study, const std::vector<ChannelGroup>& groups,
+                                 const RunControl& control) {
+  std::size_t rows = 0;
+  for (const StudyRecording& recording : study.recordings) {
+    rows += recording.count();
+  }
+  std::vector<Searched> searched(groups.size());
+  std::mutex told;  // progress is told by one thread at a time
+  std::vector<double> done(groups.size(), 0.0);
+  const std::size_t at_once = rows <= kMostRowsSideBySide ? kSideBySide : 1;
+  for (std::size_t first = 0; first < groups.size() && !control.stop.stop_requested(); first += at_once) {
+    const std::size_t count = std::min(at_once, groups.size() - first);
+    parallel_for(
+        control.threads, count,
+        [&](std::size_t i) {
+          const std::size_t g = first + i;
+          Searched& one = searched[g];
+          one.outcome =
+              search_group(study, groups[g], g, control.reporting([&, g](std::string_view stage, double fraction) {
+                const std::scoped_lock lock(told);
+                done[g] = fraction;
+                control.report(
+                    stage, 0.95 * std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(groups.size()));
+              }));
+          one.taken = take_from(groups[g], one.outcome, control);
+          const std::scoped_lock lock(told);
+          done[g] = 1.0;
+        },
+        control.stop);
+  }
+  return searched;
 }
 
 tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The investigation was stopped."); }
@@ -265,7 +336,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   }
   const std::vector<ChannelGroup> groups = group_channels(study);
   std::vector<GroupOutcome> outcomes;
-  Taken taken;
+  TakenOfAll taken;
   std::vector<Evidence> found;
   std::vector<Evidence> examined;
   for (const StudyRecording& recording : study.recordings) {
@@ -277,19 +348,14 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
       }
     }
   }
+  std::vector<Searched> searched = search_all(study, groups, control);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (control.stop.stop_requested()) {
-      return cancelled();
-    }
-    outcomes.push_back(
-        search_group(study, groups[g], g, control.reporting([&](std::string_view stage, double fraction) {
-          control.report(stage, 0.95 * (static_cast<double>(g) + fraction) / static_cast<double>(groups.size()));
-        })));
-    if (control.stop.stop_requested()) {
-      return cancelled();
-    }
-    GroupOutcome& outcome = outcomes.back();
-    take_from(groups[g], outcome, control.stop, taken);
+    taken.add(std::move(searched[g].taken));
+    outcomes.push_back(std::move(searched[g].outcome));
+    const GroupOutcome& outcome = outcomes.back();
     if (!outcome.usable) {
       report.notes.push_back("The channel " + groups[g].column + " cannot be examined: " + outcome.why_not + ".");
       for (const Cause& cause : cause_registry()) {
@@ -299,9 +365,9 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
     }
     report.models.push_back(outcome.model);
     found.insert(found.end(), outcome.found.begin(), outcome.found.end());
-    for (Evidence& evidence : outcome.examined) {
-      evidence.group = g;
+    for (const Evidence& evidence : outcome.examined) {
       examined.push_back(evidence);
+      examined.back().group = g;
     }
     for (const Cause& cause : cause_registry()) {
       const std::string needs = cause.lacks != nullptr ? cause.lacks(study, groups[g]) : "";

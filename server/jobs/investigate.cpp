@@ -179,15 +179,19 @@ class Investigate final : public JobKind {
     constexpr std::int64_t kBytesSearched = 80;
     constexpr std::int64_t kBytesVibrating = 480;
     constexpr std::int64_t kMostVibrating = std::int64_t{1} << 20;
+    constexpr std::int64_t kMostSideBySide = 400'000;  // rows of studies in which three axes are searched side by side
     constexpr double kSecondsPerSample = 1e-5;
     JobCost cost;
+    std::int64_t rows = 0;
     std::int64_t beside_others = 0;  // rows in which a gyroscope may stand beside an accelerometer
     for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
       cost.memory_bytes += (kBytesKept * size.columns + kBytesSearched) * size.rows;
+      rows += size.rows;
       beside_others += size.columns > 1 ? size.rows : 0;
       cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
     cost.memory_bytes += kBytesVibrating * std::min(beside_others, kMostVibrating);
+    cost.memory_bytes += rows <= kMostSideBySide ? 2 * (kBytesSearched + kBytesVibrating) * beside_others : 0;
     return cost;
   }
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Memory and time of one investigation of a long recording of six axes at 100 Hz.
+"""Memory and time of one investigation of long recordings, of one of six axes at 100 Hz where nothing else is asked for.
 
-usage: investigation_memory.py [HOURS] [--examined 3|6] [--keep DIR]    (default 24, 3; DRIFTLAB is the command line program)
+usage: investigation_memory.py [HOURS] [--axes 6] [--examined 3] [--recordings 1] [--rate-hz 100] [--keep DIR]
+(default 24 h; DRIFTLAB is the command line program; eight quarters of an hour of three axes: 0.25 --axes 3 --recordings 8 --rate-hz 50)
 
-`driftlab simulate` makes six axes of one sensor at rest, which become one .npy file of six columns. With 3 examined they
-are an inertial unit: three gyroscopes, and three accelerometers beside them, which are inputs of the search. With 6
-examined they are six gyroscope columns, and every one is searched. --keep names the folder in which the study stays, and
+`driftlab simulate` makes the axes of a sensor at rest, which become the columns of a .npy file. The examined ones are gyroscopes; the
+others are accelerometers beside them, which are inputs of the search. More than three examined have no axis. --keep names the folder in which the study stays, and
 where it is taken from if it is there already.
 
 Prints the largest RssAnon of the process, which is what it allocated, read every 20 ms; its largest resident memory
@@ -24,37 +24,41 @@ from pathlib import Path
 
 import numpy as np
 
-RATE_HZ = 100
-AXES = 6
-
 
 def program() -> str:
     return os.environ.get("DRIFTLAB", "build/release/bin/driftlab")
 
 
-def make_study(folder: Path, hours: float, examined: int) -> Path:
-    """A study of one static recording; what is in the folder already is used again."""
-    data = folder / f"unit-{hours:g}-{examined}.npy"
-    if not data.exists():
-        rows = round(3600 * hours * RATE_HZ)
-        table = np.lib.format.open_memmap(data, mode="w+", dtype="<f8", shape=(rows, AXES))
-        for axis in range(AXES):
-            one = folder / "axis.npy"
-            subprocess.run([program(), "simulate", "--rate-hz", str(RATE_HZ), "--duration-s", str(rows / RATE_HZ), "--seed", str(axis + 1),
-                            "--out", str(one)], check=True, stdout=subprocess.DEVNULL)
-            values = np.load(one).reshape(-1)[:rows]
-            table[:, axis] = values if axis < AXES // 2 or examined == AXES else 2e-3 * values / values.std()  # accelerometers: 2 mg
-            one.unlink()
-        table.flush()
-    gyro = {"quantity": "angular_rate", "unit": "deg/s"}
-    columns = {str(k): {**gyro, "axis": "xyz"[k]} for k in range(3)}
-    columns |= {str(k + 3): {"quantity": "specific_force", "axis": "xyz"[k], "unit": "g"} for k in range(3)}
-    if examined == AXES:
-        columns = {str(k): dict(gyro) for k in range(AXES)}
-    study = {"device": {"id": "long"}, "baseline": {"kind": "auto"},
-             "recordings": [{"id": "rest", "file": data.name, "rate_hz": RATE_HZ, "columns": columns, "condition": {"kind": "static"}}]}
-    path = folder / f"study-{hours:g}-{examined}.json"
-    path.write_text(json.dumps(study))
+def make_recording(data: Path, given: argparse.Namespace, first_seed: int) -> None:
+    rows = round(3600 * given.hours * given.rate_hz)
+    table = np.lib.format.open_memmap(data, mode="w+", dtype="<f8", shape=(rows, given.axes))
+    for axis in range(given.axes):
+        one = data.with_name("axis.npy")
+        subprocess.run([program(), "simulate", "--rate-hz", str(given.rate_hz), "--duration-s", str(rows / given.rate_hz),
+                        "--seed", str(first_seed + axis), "--out", str(one)], check=True, capture_output=True)
+        values = np.load(one).reshape(-1)[:rows]
+        table[:, axis] = values if axis < given.examined else 2e-3 * values / values.std()  # accelerometers: 2 mg
+        one.unlink()
+    table.flush()
+
+
+def make_study(folder: Path, given: argparse.Namespace) -> Path:
+    """A study of static recordings; what is in the folder already is used again."""
+    named = given.examined <= 3
+    columns: dict[str, dict[str, str]] = {}
+    for k in range(given.axes):
+        examined = k < given.examined
+        columns[str(k)] = {"quantity": "angular_rate", "unit": "deg/s"} if examined else {"quantity": "specific_force", "unit": "g"}
+        if named:
+            columns[str(k)]["axis"] = "xyz"[k % 3]
+    recordings = []
+    for r in range(given.recordings):
+        data = folder / f"unit-{given.hours:g}-{given.rate_hz:g}-{given.axes}-{given.examined}-{r}.npy"
+        if not data.exists():
+            make_recording(data, given, 1 + r * given.axes)
+        recordings.append({"id": f"rest-{r + 1}", "file": data.name, "rate_hz": given.rate_hz, "columns": columns, "condition": {"kind": "static"}})
+    path = folder / f"study-{given.hours:g}-{given.rate_hz:g}-{given.axes}-{given.examined}-{given.recordings}.json"
+    path.write_text(json.dumps({"device": {"id": "long"}, "baseline": {"kind": "auto"}, "recordings": recordings}))
     return path
 
 
@@ -87,18 +91,21 @@ def measure(study: Path) -> dict[str, float]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("hours", nargs="?", type=float, default=24.0)
-    parser.add_argument("--examined", type=int, choices=(3, AXES), default=3)
+    parser.add_argument("--axes", type=int, default=6)
+    parser.add_argument("--examined", type=int, default=3)
+    parser.add_argument("--recordings", type=int, default=1)
+    parser.add_argument("--rate-hz", type=float, default=100.0)
     parser.add_argument("--keep", type=Path)
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folder = given.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        study = make_study(folder, given.hours, given.examined)
+        study = make_study(folder, given)
         figures = measure(study)
-    rows = round(3600 * given.hours * RATE_HZ)
-    print(f"{given.hours:g} h, {rows} rows of {AXES} axes, {given.examined} examined: "
-          + ", ".join(f"{name} {value:.0f}" for name, value in figures.items())
-          + f"; {figures['RssAnon [MiB]'] * 2**20 / rows / AXES:.0f} bytes a sample of every column")
+    rows = round(3600 * given.hours * given.rate_hz) * given.recordings
+    print(f"{given.recordings} x {given.hours:g} h at {given.rate_hz:g} Hz, {rows} rows of {given.axes} axes, {given.examined} examined: "
+          + ", ".join(f"{name} {value:.0f}" if value >= 100 else f"{name} {value:.1f}" for name, value in figures.items())
+          + f"; {figures['RssAnon [MiB]'] * 2**20 / rows / given.axes:.0f} bytes a sample of every column")
 
 
 if __name__ == "__main__":

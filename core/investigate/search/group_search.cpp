@@ -346,16 +346,22 @@ class GroupSearch {
     const bool tails_known = std::any_of(outcome_.found.begin(), outcome_.found.end(), [](const Evidence& evidence) {
       return evidence.cause->as<NoiseTails>() != nullptr;
     });
-    std::vector<Evidence> candidates;
+    std::vector<const Cause*> asked;
     for (const Cause& cause : cause_registry()) {
       const bool tails = cause.as<NoiseTails>() != nullptr;
       const bool wanted = is_of_samples(cause);
       const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
-      if (!wanted || (tails && tails_known) || looks_like_fact(cause) || lacking || stopped()) {
-        continue;
+      if (wanted && !(tails && tails_known) && !looks_like_fact(cause) && !lacking) {
+        asked.push_back(&cause);
       }
-      for (Evidence& evidence : examine_of(cause)(data)) {
-        evidence.cause = &cause;
+    }
+    std::vector<std::vector<Evidence>> found(asked.size());
+    parallel_for(
+        control_.threads, asked.size(), [&](std::size_t i) { found[i] = examine_of(*asked[i])(data); }, control_.stop);
+    std::vector<Evidence> candidates;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      for (Evidence& evidence : found[i]) {
+        evidence.cause = asked[i];
         candidates.push_back(std::move(evidence));
       }
     }
