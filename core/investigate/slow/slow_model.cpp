@@ -3,7 +3,6 @@
 #include "core/investigate/slow/whitening_walk.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -35,33 +34,6 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
     gains.inv_sd.push_back(walk.inv_sd());
   }
   return gains;
-}
-
-/// One block of `width` series side by side: the innovation of each over its deviation, and its states behind the
-/// block, one after the other. `kStates`: how many there are where they are few, else 0.
-template <std::size_t kStates>
-void whiten_block(std::size_t states, std::size_t width, const double* __restrict in, const double* __restrict phi,
-                  const double* __restrict gain, double inv_sd, double* __restrict state, double* __restrict out) {
-  const std::size_t m = kStates > 0 ? kStates : states;
-  for (std::size_t c = 0; c < width; ++c) {
-    double v = in[c];
-    for (std::size_t i = 0; i < m; ++i) {
-      v -= state[i * width + c];
-    }
-    v = inv_sd > 0.0 ? v : 0.0;
-    out[c] = v * inv_sd;
-    for (std::size_t i = 0; i < m; ++i) {
-      state[i * width + c] = phi[i] * (state[i * width + c] + gain[i] * v);
-    }
-  }
-}
-
-using WhitenBlock = decltype(&whiten_block<0>);
-
-WhitenBlock whitening_of(std::size_t states) {
-  constexpr std::array<WhitenBlock, 5> kFew{whiten_block<0>, whiten_block<1>, whiten_block<2>, whiten_block<3>,
-                                            whiten_block<4>};
-  return states < kFew.size() ? kFew[states] : kFew[0];
 }
 
 }  // namespace
@@ -156,7 +128,7 @@ Whitened whiten(const BlockSeries& series, const SlowModel& model, const BlockCo
     std::vector<double>& out = result.columns.rows[r];
     out.assign(blocks.mean.size() * width, 0.0);
     const double* in = columns.rows[r].data();
-    const WhitenBlock whiten_one = whitening_of(m);
+    const BlockWhitening whiten_one = block_whitening(m);
     double last_log = 0.0;
     std::size_t last_at = static_cast<std::size_t>(-1);
     for (std::size_t b = 0; b < blocks.mean.size(); ++b) {

@@ -39,11 +39,16 @@ class Norms {
     WhiteningWalk walk(states, std::equal(filled.begin() + 1, filled.end(), filled.begin()), 2 * kPlaces);
     for (std::size_t i = 0; i < blocks && !polled(stop, i); ++i) {
       walk.next(filled[i]);
+      std::array<double, 2 * kPlaces> both{};
+      std::array<double, 2 * kPlaces> whitened{};
       for (std::size_t k = 0; k < kPlaces; ++k) {
-        const double step = walk.whitened(k, i >= from[k] ? 1.0 : 0.0);
-        const double impulse = walk.whitened(kPlaces + k, i == from[k] ? 1.0 : 0.0);
-        step_[k] += step * step;
-        impulse_[k] += impulse * impulse;
+        both[k] = i >= from[k] ? 1.0 : 0.0;
+        both[kPlaces + k] = i == from[k] ? 1.0 : 0.0;
+      }
+      walk.whiten_all(both.data(), whitened.data());
+      for (std::size_t k = 0; k < kPlaces; ++k) {
+        step_[k] += whitened[k] * whitened[k];
+        impulse_[k] += whitened[kPlaces + k] * whitened[kPlaces + k];
       }
     }
   }

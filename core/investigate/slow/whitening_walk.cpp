@@ -1,12 +1,40 @@
 #include "core/investigate/slow/whitening_walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace driftlab::investigate {
+namespace {
+
+/// `kStates`: how many there are where they are few, else 0.
+template <std::size_t kStates>
+void whiten_block(std::size_t states, std::size_t width, const double* __restrict in, const double* __restrict phi,
+                  const double* __restrict gain, double inv_sd, double* __restrict state, double* __restrict out) {
+  const std::size_t m = kStates > 0 ? kStates : states;
+  for (std::size_t c = 0; c < width; ++c) {
+    double v = in[c];
+    for (std::size_t i = 0; i < m; ++i) {
+      v -= state[i * width + c];
+    }
+    v = inv_sd > 0.0 ? v : 0.0;
+    out[c] = v * inv_sd;
+    for (std::size_t i = 0; i < m; ++i) {
+      state[i * width + c] = phi[i] * (state[i * width + c] + gain[i] * v);
+    }
+  }
+}
+
+}  // namespace
+
+BlockWhitening block_whitening(std::size_t states) {
+  constexpr std::array<BlockWhitening, 5> kFew{whiten_block<0>, whiten_block<1>, whiten_block<2>, whiten_block<3>,
+                                               whiten_block<4>};
+  return states < kFew.size() ? kFew[states] : kFew[0];
+}
 
 WhiteningWalk::WhiteningWalk(const BlockStates& states, bool uniform, std::size_t width)
-    : states_(states), uniform_(uniform), width_(width) {
+    : states_(states), uniform_(uniform), width_(width), whiten_(block_whitening(states.phi.size())) {
   const std::size_t m = states.phi.size();
   covariance_.assign(m * m, 0.0);
   for (std::size_t i = 0; i < m; ++i) {

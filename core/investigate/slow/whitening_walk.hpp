@@ -8,6 +8,13 @@
 
 namespace driftlab::investigate {
 
+/// One block of `width` series side by side: the innovations over their deviation to `out`, another place than `in`,
+/// and the states behind the block. `state`: of the series one after the other, for each state. Where `inv_sd` is 0 the
+/// block is empty.
+using BlockWhitening = void (*)(std::size_t states, std::size_t width, const double* in, const double* phi,
+                                const double* gain, double inv_sd, double* state, double* out);
+[[nodiscard]] BlockWhitening block_whitening(std::size_t states);
+
 class WhiteningWalk {
  public:
   /// Filters `width` series with the same gains; `states` must outlive the walk. `uniform`: every block is as full as
@@ -30,6 +37,10 @@ class WhiteningWalk {
     }
     return v * inv_sd_;
   }
+  /// The same of all series at once. `whitened` is another place than `values`.
+  void whiten_all(const double* values, double* whitened) {
+    whiten_(gain_.size(), width_, values, states_.phi.data(), gain_.data(), inv_sd_, state_.data(), whitened);
+  }
 
   /// Gains do not change any more.
   [[nodiscard]] bool settled() const { return settled_; }
@@ -45,6 +56,7 @@ class WhiteningWalk {
   const BlockStates& states_;
   bool uniform_;
   std::size_t width_;
+  BlockWhitening whiten_;
   std::vector<double> covariance_, sum_, gain_, state_;
   double variance_ = 0.0;
   double inv_sd_ = 0.0;
