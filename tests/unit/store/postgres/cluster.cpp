@@ -156,6 +156,10 @@ std::string PostgresCluster::schema(const std::string& name) const {
   return uri(name);
 }
 
+bool PostgresCluster::cut_connections() const {
+  return run("SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
+}
+
 bool PostgresCluster::run(const std::string& sql) const {
   // Also where a test has made the database read-only.
   PGconn* const connection = PQconnectdb(uri("public%20-cdefault_transaction_read_only%3Doff").c_str());

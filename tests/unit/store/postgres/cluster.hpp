@@ -30,6 +30,9 @@ class PostgresCluster {
                                 const std::string& parameters = "") const;
   /// Runs statements as superuser. False: one failed.
   [[nodiscard]] bool run(const std::string& sql) const;
+  /// Ends every connection of a daemon and waits until the server has let them go, so that no later statement is still
+  /// begun on one of them; ten seconds at most for each. False: the server could not be asked.
+  [[nodiscard]] bool cut_connections() const;
   void start();
   /// `signal`: SIGINT ends connections first, SIGQUIT does not.
   void stop(int signal);

@@ -78,10 +78,6 @@ class PostgresCoordinationTest : public testing::Test {
     EXPECT_TRUE(first->coordination()->admit_others());
     return first;
   }
-  static bool cut_connections() {
-    return PostgresCluster::of_this_process().run(
-        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
-  }
 
   TemporaryDirectory directory_;
   std::string uri_;
@@ -100,7 +96,7 @@ TEST_F(PostgresCoordinationTest, NobodyComesBeforeTheFirstHasPutTheStoreInOrder)
   EXPECT_FALSE(second->coordination()->came_first());
   EXPECT_TRUE(first->ping());
   EXPECT_TRUE(second->ping());
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(PostgresCluster::of_this_process().cut_connections());
   EXPECT_TRUE(first->ping()) << "the lock is taken again, together";
   EXPECT_TRUE(second->ping());
 }
@@ -141,7 +137,7 @@ TEST_F(PostgresCoordinationTest, AKeyIsOnesUntilItIsGivenBackAndWhereItsConnecti
   EXPECT_TRUE(*first->coordination()->take_key("k"));
   EXPECT_FALSE(*second->coordination()->take_key("k"));
   EXPECT_TRUE(*second->coordination()->take_key("other"));
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(PostgresCluster::of_this_process().cut_connections());
   EXPECT_TRUE(*first->coordination()->take_key("third")) << "on a new connection, with the keys of the old one";
   EXPECT_FALSE(*second->coordination()->take_key("k"));
   first->coordination()->give_back_key("k");
@@ -181,7 +177,7 @@ TEST_F(PostgresCoordinationTest, AListenerThatWasCutOffSaysSo) {
   const auto store = open_first();
   store->coordination()->listen(ear.hints());
   EXPECT_TRUE(ear.hears("access")) << "also without a hint, every two seconds";
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(PostgresCluster::of_this_process().cut_connections());
   EXPECT_TRUE(ear.hears("lost"));
 }
 

@@ -42,22 +42,19 @@ class OwnedFiles final : public RemoteFiles {
 Trouble database_in_trouble(const std::filesystem::path& folder, BlobFault fault, const std::string& sha256) {
   PostgresCluster& cluster = PostgresCluster::of_this_process();
   const std::string schema = schema_for(folder);
-  const auto cut = [&cluster] {
-    return cluster.run("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
-  };
   switch (fault) {
     case BlobFault::Cut:
-      EXPECT_TRUE(cut());
+      EXPECT_TRUE(cluster.cut_connections());
       break;
     case BlobFault::Unavailable:
       cluster.stop(SIGQUIT);
       return {&cluster, [](PostgresCluster* stopped) { stopped->start(); }};
     case BlobFault::Denied:
       EXPECT_TRUE(cluster.run("ALTER DATABASE postgres SET default_transaction_read_only = on"));
-      EXPECT_TRUE(cut());
-      return {&cluster, [cut](PostgresCluster* denying) {
+      EXPECT_TRUE(cluster.cut_connections());
+      return {&cluster, [](PostgresCluster* denying) {
                 EXPECT_TRUE(denying->run("ALTER DATABASE postgres RESET default_transaction_read_only"));
-                EXPECT_TRUE(cut());
+                EXPECT_TRUE(denying->cut_connections());
               }};
     case BlobFault::Damaged:
       EXPECT_TRUE(cluster.run("UPDATE " + schema +

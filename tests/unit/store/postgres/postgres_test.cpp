@@ -52,9 +52,6 @@ class PostgresStoreTest : public testing::Test {
     EXPECT_THAT(error.message, AllOf(EndsWith("."), Not(HasSubstr("\n")), Not(HasSubstr("secret"))));
     return error;
   }
-  static bool cut_connections() {
-    return cluster().run("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
-  }
 
   TemporaryDirectory directory_;
   std::string schema_;
@@ -198,7 +195,7 @@ TEST_F(PostgresStoreTest, ADaemonThatWantsTheDatabaseAloneKeepsOthersOut) {
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, ErrorCode::Conflict);
     EXPECT_THAT(second.error().message, HasSubstr("Another daemon works with the database"));
-    ASSERT_TRUE(cut_connections());
+    ASSERT_TRUE(cluster().cut_connections());
     EXPECT_TRUE(first->ping()) << "the lock is taken again";
     EXPECT_FALSE(open_postgres_store(uri_, alone));
   }
@@ -208,11 +205,11 @@ TEST_F(PostgresStoreTest, ADaemonThatWantsTheDatabaseAloneKeepsOthersOut) {
 TEST_F(PostgresStoreTest, BrokenConnectionsAreReplacedUnnoticed) {
   const auto store = open();
   const Device device = add_device(*store);
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(cluster().cut_connections());
   EXPECT_TRUE(store->device(device.id)) << "a read";
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(cluster().cut_connections());
   add_device(*store, "another");
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(cluster().cut_connections());
   EXPECT_TRUE(store->ping());
 }
 
@@ -259,12 +256,12 @@ TEST_F(PostgresStoreTest, AReadOnlyDatabaseIsSaidAndStillRead) {
   const auto store = open();
   const Device device = add_device(*store);
   ASSERT_TRUE(cluster().run("ALTER DATABASE postgres SET default_transaction_read_only = on"));
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(cluster().cut_connections());
   EXPECT_TRUE(store->device(device.id));
   const auto written = store->write_probe();
   EXPECT_THAT(refusal(uri_).message, HasSubstr("is read-only"));
   ASSERT_TRUE(cluster().run("ALTER DATABASE postgres RESET default_transaction_read_only"));
-  ASSERT_TRUE(cut_connections());
+  ASSERT_TRUE(cluster().cut_connections());
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, ErrorCode::Io);
   EXPECT_THAT(written.error().message, HasSubstr("is read-only"));
