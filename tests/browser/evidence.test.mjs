@@ -120,13 +120,13 @@ test('an outage evaluation shows what its runs say while they go on', {timeout: 
   await page.getByText(/Running: what \d+ runs of 400 say\./).waitFor();
   // A reading that is refused meanwhile says so above what is known, which stays.
   await page.route('**/v1/outage-evaluations/*', route => route.fulfill({status: 422, contentType: 'application/problem+json', body: JSON.stringify({type: '/problems/busy', title: 'Busy', status: 422, detail: 'The daemon is busy.', retryable: true})}));
+  await daemon.json(`/v1/jobs/${made.id}/cancel`, {});
   const refusal = page.getByRole('alert').filter({hasText: 'The daemon is busy.'});
-  await refusal.waitFor({timeout: 60000});
+  await refusal.waitFor();
   assert.equal(await soFar.locator('svg circle').count(), running.partial.filters.length);
   await page.unroute('**/v1/outage-evaluations/*');
   await refusal.getByRole('button', {name: 'Try again'}).click();
   await refusal.waitFor({state: 'detached'});
-  await daemon.json(`/v1/jobs/${made.id}/cancel`, {});
   await page.getByText('The job was cancelled; there is no result.').waitFor();
   await closed(page);
 });
