@@ -43,9 +43,12 @@ struct TabledCampaign {
 /// written.
 [[nodiscard]] Result<TabledCampaign> tabled_from_json(const Json& document);
 
+/// Whether a table names its columns as options and documents do, or as they are printed.
+enum class TableNames { AsTyped, InPrint };
+
 /// Parameter tables, as text, of every sensor axis, by both methods. `hardware`: texts that describe the device, in
 /// which its sensor may be named.
 [[nodiscard]] std::string tables_of(const TabledCampaign& campaign, const std::string& device,
-                                    const std::vector<std::string>& hardware);
+                                    const std::vector<std::string>& hardware, TableNames names);
 
 }  // namespace driftlab::cli

@@ -99,10 +99,10 @@ Exit run(const CharacteriseFlags& flags) {
       return complain(drawn.error());
     }
   }
-  const std::string text = flags.json
-                               ? document.dump(2) + "\n"
-                               : verdicts_to_text(told) + "\n" + tables_of(campaign, inputs->device, inputs->hardware) +
-                                     further_to_text(told);
+  const std::string text = flags.json ? document.dump(2) + "\n"
+                                      : verdicts_to_text(told) + "\n" +
+                                            tables_of(campaign, inputs->device, inputs->hardware, TableNames::AsTyped) +
+                                            further_to_text(told);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }

@@ -4,6 +4,7 @@
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise.hpp"
+#include "schema/text/in_print.hpp"
 #include "schema/text/parameter_table.hpp"
 #include "schema/text/trend_table.hpp"
 
@@ -99,12 +100,21 @@ std::size_t alike(const std::vector<AxisTables>& axes, std::size_t from, std::si
   return count;
 }
 
-std::string one_axis_text(const AxisTables& axis) {
+ParameterTable named(const ParameterTable& table, TableNames names) {
+  return names == TableNames::InPrint ? in_print(table) : table;
+}
+
+std::string trends_text(const ParameterTable& table, TableNames names) {
+  const TrendTable trends = build_trends(table);
+  return trends_to_text(names == TableNames::InPrint ? in_print(trends) : trends);
+}
+
+std::string one_axis_text(const AxisTables& axis, TableNames names) {
   std::string text;
   for (const auto& table : axis.tables) {
-    text += table ? table_to_text(*table, false) + "\n" : table.error().message + "\n\n";
+    text += table ? table_to_text(named(*table, names), false) + "\n" : table.error().message + "\n\n";
     if (table && axis.pooled) {
-      text += trends_to_text(build_trends(*table)) + "\n";
+      text += trends_text(*table, names) + "\n";
     }
   }
   if (axis.pooled && axis.pooled->structure) {
@@ -116,7 +126,7 @@ std::string one_axis_text(const AxisTables& axis) {
 }  // namespace
 
 std::string tables_of(const TabledCampaign& campaign, const std::string& device,
-                      const std::vector<std::string>& hardware) {
+                      const std::vector<std::string>& hardware, TableNames names) {
   std::vector<AxisTables> axes;
   for (const SensorSources& sensor : campaign.sensors) {
     axes.push_back(axis_tables(campaign, device, hardware, sensor));
@@ -125,13 +135,13 @@ std::string tables_of(const TabledCampaign& campaign, const std::string& device,
   for (std::size_t i = 0; i < axes.size();) {
     const std::size_t count = std::min(alike(axes, i, 0), alike(axes, i, 1));
     if (count < 2) {
-      text += one_axis_text(axes[i++]);
+      text += one_axis_text(axes[i++], names);
       continue;
     }
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
       std::vector<ParameterTable> tables;
       for (std::size_t k = i; k < i + count; ++k) {
-        tables.push_back(*axes[k].tables[m]);
+        tables.push_back(named(*axes[k].tables[m], names));
       }
       text += axes_to_text(tables) + "\n";
     }

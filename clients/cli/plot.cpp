@@ -75,7 +75,7 @@ Exit run_report(const PlotFlags& flags) {
     if (!campaign) {
       return complain(campaign.error());
     }
-    tables = tables_of(*campaign, document->device, document->hardware);
+    tables = tables_of(*campaign, document->device, document->hardware, TableNames::InPrint);
   }
   const auto page = report_page(document->document, document->device, tables);
   if (!page) {

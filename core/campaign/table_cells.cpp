@@ -177,8 +177,9 @@ ReportedValue ratio_of(const ReportedValue& now, const ReportedValue& reference)
 std::string_view name_of(Absence absence) { return absence == Absence::NoneFound ? "none_found" : "not_identifiable"; }
 
 Absence absence_of(std::string_view reason) {
-  return reason.find("the best fit has none of it") == std::string_view::npos ? Absence::NotIdentifiable
-                                                                              : Absence::NoneFound;
+  const auto says = [reason](std::string_view words) { return reason.find(words) != std::string_view::npos; };
+  return says("the best fit has none of it") || says("has no white noise of its own") ? Absence::NoneFound
+                                                                                      : Absence::NotIdentifiable;
 }
 
 }  // namespace driftlab

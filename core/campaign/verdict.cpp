@@ -175,8 +175,13 @@ void say_rivals(const ReportedChannel& channel, Verdict& verdict) {
       }
     }
   }
+  const auto said = [&](const std::string& warning) {
+    return warning.find("J-test") != std::string::npos ||
+           std::any_of(verdict.details.begin(), verdict.details.end(),
+                       [&](const std::string& detail) { return detail.ends_with(warning); });
+  };
   for (const std::string& warning : best.warnings) {
-    if (warning.find("J-test") == std::string::npos) {  // said already
+    if (!said(warning)) {
       verdict.details.push_back(warning);
     }
   }

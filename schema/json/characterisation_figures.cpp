@@ -55,21 +55,19 @@ Series robust_series(const StoredChannel& channel, const DrawnCurve& curve) {
 struct ComponentStyle {
   const char* colour;
   std::vector<double> dash;
-  const char* name;
 };
 
 ComponentStyle style_of(const std::string& process, int nth) {
-  static const std::map<std::string, ComponentStyle> styles{
-      {"white_noise", {"#00785a", {7.0, 4.0}, "white noise"}},
-      {"gauss_markov", {"#6b2a86", {2.0, 3.5}, "Gauss-Markov"}},
-      {"random_walk", {"#5c4300", {10.0, 3.0, 2.0, 3.0}, "random walk"}},
-      {"linear_drift", {"#5d6670", {4.0, 4.0}, "drift"}},
-      {"quantization_noise", {"#5d6670", {1.0, 1.0}, "quantization"}}};
+  static const std::map<std::string, ComponentStyle> styles{{"white_noise", {"#00785a", {7.0, 4.0}}},
+                                                            {"gauss_markov", {"#6b2a86", {2.0, 3.5}}},
+                                                            {"random_walk", {"#5c4300", {10.0, 3.0, 2.0, 3.0}}},
+                                                            {"linear_drift", {"#5d6670", {4.0, 4.0}}},
+                                                            {"quantization_noise", {"#5d6670", {1.0, 1.0}}}};
   if (process == "gauss_markov" && nth == 1) {
-    return {"#a63a63", {1.0, 3.0}, "Gauss-Markov"};
+    return {"#a63a63", {1.0, 3.0}};
   }
   const auto found = styles.find(process);
-  return found != styles.end() ? found->second : ComponentStyle{"#5d6670", {4.0, 4.0}, ""};
+  return found != styles.end() ? found->second : ComponentStyle{"#5d6670", {4.0, 4.0}};
 }
 
 /// The processes of the model, each by itself; none of a model of one.
@@ -82,8 +80,7 @@ std::vector<Series> component_series(const DrawnAllan& drawn) {
   for (const auto& [process, curve] : drawn.model->components) {
     const int nth = seen[process]++;
     const ComponentStyle style = style_of(process, nth);
-    const std::string name = *style.name != '\0' ? style.name : replaced(process, "_", " ");
-    Series series = series_of(name + (nth > 0 ? " " + std::to_string(nth + 1) : ""), curve);
+    Series series = series_of(process_name(process) + (nth > 0 ? " " + std::to_string(nth + 1) : ""), curve);
     series.colour = style.colour;
     series.dash = style.dash;
     components.push_back(std::move(series));

@@ -32,22 +32,6 @@ std::vector<double> numbers_of(const Json& list) {
   return values;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-std::string printed_unit(std::string unit) {
-  for (std::size_t at = unit.find("sqrt("); at != std::string::npos; at = unit.find("sqrt(")) {
-    const std::size_t end = unit.find(')', at);
-    unit = unit.substr(0, at) + "√" + unit.substr(at + 5, end - at - 5) +
-           (end == std::string::npos ? "" : unit.substr(end + 1));
-  }
-  return replaced(replaced(std::move(unit), "^2", "²"), "*", "·");
-}
-
 std::string quantity_text(const Json& quantity) {
   const Json ci95 = quantity.value("ci95", Json(nullptr));
   const bool bounded = ci95.is_array() && ci95.size() == 2;

@@ -1,6 +1,7 @@
 #pragma once
 /// Numbers and words of documents as figures take them.
 #include "core/analysis/drawn_values.hpp"
+#include "schema/figure/printed_names.hpp"
 #include "schema/json/json.hpp"
 
 #include <cstddef>
@@ -18,9 +19,6 @@ namespace driftlab {
 /// Numbers that are all there; 0 for one that is not.
 [[nodiscard]] std::vector<double> numbers_of(const Json& list);
 
-[[nodiscard]] std::string replaced(std::string text, const std::string& what, const std::string& by);
-/// As in print: deg/√h, m/s².
-[[nodiscard]] std::string printed_unit(std::string unit);
 /// {"value", "unit", "ci95"} with the digits that the interval allows.
 [[nodiscard]] std::string quantity_text(const Json& quantity);
 /// A name for a file and an id.

@@ -19,7 +19,8 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
                             (document.at("axis").is_string() ? document.at("axis").get<std::string>() : "");
   for (const Json& column : document.at("columns")) {
     const auto key = column.at("key").get<std::string>();
-    Series series{.name = key};
+    const std::string name = column_name(key);
+    Series series{.name = name};
     const std::string unit = column.value("unit", "");
     std::string against = "condition";
     for (const Json& row : document.at("rows")) {
@@ -45,12 +46,12 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
     series.mark = Mark::Dot;
     series.key = false;
     Plot plot{.x = figure::axis_about_zero(replaced(against, "_", " "), far),
-              .y = figure::axis_from_zero(key + ", " + printed_unit(unit), most),
+              .y = figure::axis_from_zero(name + ", " + printed_unit(unit), most),
               .series = {std::move(series)}};
     std::string named = title;
-    named.append(": ").append(key);
+    named.append(": ").append(name);
     Figure figure{.title = std::move(named),
-                  .sentence = key + " under each condition with its 95 % interval, from zero.",
+                  .sentence = name + " under each condition with its 95 % interval, from zero.",
                   .source = "driftlab " DRIFTLAB_VERSION ", " + document.value("model", std::string())};
     figure.plots.push_back(std::move(plot));
     figures.push_back({word(key), std::move(figure)});

@@ -1,5 +1,8 @@
-// The newest result of one recording, and what its fits imply.
+// The newest result of one recording, and what its fits and simulation models imply beside it.
+#include "core/analysis/implied_model.hpp"
+#include "schema/json/error_model.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/simulation_model.hpp"
 #include "schema/json/stored_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
@@ -12,6 +15,16 @@ namespace {
 
 /// A recording has this many fits at most: nine candidates of every axis of an inertial unit are 54.
 constexpr int kMostFits = 2000;
+
+Error not_characterised(const std::string& recording_id) {
+  return {ErrorCode::NotFound, "The recording " + recording_id + " has not been characterised.", {}};
+}
+
+Error no_channel(const std::string& recording_id, const std::string& name) {
+  return {ErrorCode::NotFound,
+          "The recording " + recording_id + " has no channel '" + name + "' in its result.",
+          {{"parameter", "channel"}}};
+}
 
 /// Where a job's document speaks of a recording: by its id, or by the name that a study gave it.
 Result<Json> recording_in(const Json& document, const Job& job, const std::string& recording_id) {
@@ -93,7 +106,7 @@ Result<Response> get_characterisation(ApiContext& context, const Request& reques
     return fail(fits.error());
   }
   if (fits->empty()) {
-    return fail(ErrorCode::NotFound, "The recording " + recording->id + " has not been characterised.");
+    return fail(not_characterised(recording->id));
   }
   auto found = result_of(context, fits->front().job_id, recording->id);
   if (!found) {
@@ -112,10 +125,7 @@ Result<Response> get_characterisation(ApiContext& context, const Request& reques
     channels.push_back(std::move(*document));
   }
   if (channels.empty()) {
-    return fail(
-        ErrorCode::NotFound,
-        "The recording " + recording->id + " has no channel '" + std::string(wanted.value_or("")) + "' in its result.",
-        {{"parameter", "channel"}});
+    return fail(no_channel(recording->id, std::string(wanted.value_or(""))));
   }
   const Json asked = stored(found->job.request_json);
   const std::int64_t revision = fits->front().recording_revision;
@@ -162,6 +172,65 @@ Result<Response> get_implied(ApiContext& context, const Request& request) {
               "The result of the job " + fit->job_id + " does not hold the channel " + fit->channel + ".");
 }
 
+/// The part of the newest result of `recording_id` that is about that channel.
+Result<StoredChannel> newest_channel(ApiContext& context, const std::string& recording_id, const std::string& name) {
+  auto recording = context.store.recording(recording_id);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  auto fits = newest_fits(context.store, recording->id);
+  if (!fits) {
+    return fail(fits.error());
+  }
+  if (fits->empty()) {
+    return fail(not_characterised(recording->id));
+  }
+  auto found = result_of(context, fits->front().job_id, recording->id);
+  if (!found) {
+    return fail(found.error());
+  }
+  for (const Json& channel : found->recording.at("channels")) {
+    if (channel.at("channel") == name) {
+      return stored_channel_from_json(channel);
+    }
+  }
+  return fail(no_channel(recording->id, name));
+}
+
+Result<Response> get_implied_by_model(ApiContext& context, const Request& request) {
+  auto model = context.store.model(request.parameters[0]);
+  if (!model) {
+    return fail(model.error());
+  }
+  const auto recording = request.parameter("recording");
+  const auto channel = request.parameter("channel");
+  if (!recording || !channel) {
+    const char* const missing = recording ? "channel" : "recording";
+    return fail(ErrorCode::InvalidArgument, std::string("The parameter ") + missing + " is needed.",
+                {{"parameter", missing}});
+  }
+  const auto told = newest_channel(context, std::string(*recording), std::string(*channel));
+  if (!told) {
+    return fail(told.error());
+  }
+  Faults faults;
+  const auto simulated = simulation_model_from_json(stored(model->document_json), "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  const auto implied = implied_by(simulated, *told);
+  if (!implied) {
+    return fail(implied.error());
+  }
+  const Unit unit = told->told.parsed_unit();
+  return json_response(200, Json{{"model", model->id},
+                                 {"recording", *recording},
+                                 {"channel", *channel},
+                                 {"processes", driftlab::to_json(implied->processes, unit.dimension)},
+                                 {"left_out", implied->left_out},
+                                 {"implied", driftlab::to_json(implied->beside, unit.symbol)}});
+}
+
 }  // namespace
 
 void add_characterisation_routes(Router& router, ApiContext& context) {
@@ -173,6 +242,11 @@ void add_characterisation_routes(Router& router, ApiContext& context) {
   router.add({"GET", "/v1/fits/{id}/implied", "getImpliedCurves", {}, Handler([&](const Request& request) {
                 return get_implied(context, request);
               })});
+  router.add({"GET",
+              "/v1/models/{id}/implied",
+              "getModelImpliedCurves",
+              {"recording", "channel"},
+              Handler([&](const Request& request) { return get_implied_by_model(context, request); })});
 }
 
 }  // namespace driftlab::server

@@ -278,12 +278,14 @@ class OtherDevices(GuardedDaemon):
                 target += "?model=one-line"
             elif group == "search":
                 target += f"?q={of['name']}"
+            elif {"recording", "channel"} <= needed:
+                target += f"?recording={of['recording']}&channel=gz"
             elif "channel" in needed:
                 target += "?channel=gz"
             targets.append(target)
             if "device" in needed and "?" not in target:
                 targets += [f"{target}?device={of['name']}", f"{target}?device={of['device']}"]
-            if "recording" in needed:
+            if "recording" in needed and "?" not in target:
                 targets.append(f"{target}?recording={of['recording']}")
             if "job" in needed:
                 targets.append(f"{target}?job={of['job']}")

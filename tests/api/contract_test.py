@@ -210,7 +210,7 @@ class Operations(DaemonTest):
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
                   **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("content", "trace", "spectrum", "histogram", "spectrogram")},
-                  "/v1/fits/{id}/implied": fit["id"]}
+                  "/v1/fits/{id}/implied": fit["id"], "/v1/models/{id}/implied": model.json["id"]}
         tus = {"Tus-Resumable": "1.0.0"}
         content = samples.gyro_csv(seed=4)
         offered = [daemon.request("POST", "/v1/uploads", headers={**tus, "Upload-Length": str(len(content))}).headers["location"] for _ in range(4)]
@@ -242,6 +242,7 @@ class Operations(DaemonTest):
                 target += "?q=phone" if path == "/v1/search" else ""
                 target += "?model=one-line" if path == "/v1/populations" else ""
                 target += "?device=phone-07" if path == "/v1/exports/{target}" else ""
+                target += f"?recording={first.json['id']}&channel=gz" if path == "/v1/models/{id}/implied" else ""
                 target += "?channel=gz" if path.endswith(("/trace", "/spectrum", "/histogram", "/spectrogram")) else ""
                 if path in ("/v1/events", "/v1/live-recordings/{id}/events"):  # they do not end by themselves
                     self.expect(200, daemon.request("HEAD", target))

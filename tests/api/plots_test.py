@@ -18,6 +18,8 @@ from daemon import PATIENCE_S
 import samples
 from suite import DaemonTest
 
+PRINTED = {"white_noise.N": "white noise N", "gauss_markov_1.sigma": "Gauss-Markov σ", "gauss_markov_1.beta": "Gauss-Markov β"}
+
 PROGRAM = os.environ["DRIFTLAB"]
 SVG = "{http://www.w3.org/2000/svg}"
 COLUMNS = 80
@@ -152,7 +154,7 @@ class Plots(DaemonTest):
         self.every_form(command, "table", "-" + self.word(document["columns"][0]["key"]), terminal=("|constant rate|, deg/s",))
         for column in document["columns"]:
             svg = self.drawn(f"table-{self.word(column['key'])}.svg")
-            self.assertTrue(any(text.startswith(column["key"] + ", ") for text in svg.texts), svg.texts)
+            self.assertTrue(any(text.startswith(PRINTED[column["key"]] + ", ") for text in svg.texts), svg.texts)
             self.assertIn("|constant rate|, deg/s", svg.texts)
             cells = [row["values"][column["key"]] for row in document["rows"]]
             self.assertEqual(len(svg.marks()), sum(cell is not None for cell in cells))

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import samples
 
+SYMBOLS = json.loads((Path(__file__).parents[2] / "schema/names.json").read_text())["parameters"]
 PROGRAM = os.environ.get("DRIFTLAB", "")
 
 
@@ -41,10 +42,18 @@ class Pages(unittest.TestCase):
             self.assertNotIn(outside, page)
         return page
 
+    def raw_names_are_not_in(self, page: str) -> None:
+        self.assertEqual([name for name in ("gauss_markov", "white_noise", "sigma", "beta", "sqrt(", "_hz") if name in page], [])
+
     def test_of_a_characterisation(self) -> None:
         page = self.page("c.json", "characterise", "1.csv")
         self.assertIn('class="verdict"', page)
         self.assertEqual(page.count("<svg"), 1)
+        # The names and units of the field, as the pages have them; the terminal keeps those that options take.
+        self.assertRegex(page, "white noise N +Gauss-Markov σ +Gauss-Markov β")
+        self.assertRegex(page, "deg/√h +deg/h +1/s")
+        self.raw_names_are_not_in(page)
+        self.assertIn("gauss_markov_1.beta", self.said("characterise", "1.csv"))
 
     def test_of_an_investigation(self) -> None:
         page = self.page("i.json", "investigate", "study.json")
@@ -52,15 +61,16 @@ class Pages(unittest.TestCase):
         self.assertIn(document["summary"]["verdict"].split(";")[0].replace("'", "&#39;")[:40], page)
         self.assertEqual(page.count("<svg"), 4 * len(document["figures"]))
         for finding in document["findings"]:
-            self.assertIn(finding["cause"], page)
+            self.assertIn(f'<p class="meta">{finding["cause"].replace("_", " ")}, ', page)
             self.assertTrue(finding["equation"])
             self.assertIn(f'<p class="equation">{finding["equation"]}</p>', page)
             for name in finding["parameters"]:
-                self.assertIn(f"<td>{name}</td>", page)
                 spoken = re.sub("_(hz|s|deg)$", "", name).replace("_", " ")
+                self.assertIn(f"<td>{SYMBOLS.get(name, spoken)}</td>", page)
                 self.assertIn(f"{spoken} = ", finding["explanation"])
         for heading in ("Extended model", "Not examined"):
             self.assertIn(f"<h2>{heading}</h2>", page)
+        self.raw_names_are_not_in(page)
 
     def test_a_document_of_another_hand_is_one_sentence(self) -> None:
         # A document whose recordings had no quality ended the program with SIGABRT.
@@ -76,6 +86,8 @@ class Pages(unittest.TestCase):
         for heading in ("Tests", "Recordings compared", "Sessions"):
             self.assertIn(f"<h2>{heading}</h2>", page)
         self.assertIn("3.csv", page)
+        self.assertIn("<td>white noise N</td>", page)
+        self.raw_names_are_not_in(page)
 
     def test_of_an_outage_evaluation(self) -> None:
         page = self.page("o.json", "outages", "--runs", "2")

@@ -1,4 +1,4 @@
-// What stands behind a verdict is shown where it is: in the trace, beside the margin, in the difference, while runs go on.
+// What stands behind a verdict is shown where it is: in the trace, beside the margin, while runs go on.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
@@ -94,67 +94,6 @@ test('runs against one baseline are drawn with intervals and margins, under the 
   await closed(page);
 });
 
-test('what is compared has a difference with its interval, and says whether one is shown', async () => {
-  const ids = [];
-  for (const [seed, level] of [[81, 0.1], [82, 0.1], [83, 0.15]]) ids.push(await recorded(noise(12000, seed, level), {device: 'pair', id: `pair-${seed}`}));
-  const page = await open(browser, daemon, `/compare?with=${ids.join(',')}`);
-  const row = page.getByRole('row', {name: /white noise N/});
-  await row.waitFor();
-  const cells = await row.getByRole('cell').allInnerTexts();
-  assert.match(cells[1], /no difference shown: [+\u2212]?\d+(\.\d+)? \[\u2212/, cells.join(' | '));
-  assert.match(cells[2], /differs by \+\d+\.\d+ \[\d+\.\d+, \d+\.\d+\], 1\.5\d* \[1\.\d+, 1\.\d+\] times/, cells.join(' | '));
-  // The ratio is no surer than the two that make it: the distances of their ends on the logarithms, added in squares.
-  const [first, second] = (await Promise.all(ids.slice(0, 2).map(id => daemon.json(`/v1/recordings/${id}/characterisation`)))).map(each => each.channels[0].result.allan);
-  const wanted = Math.hypot(Math.log(second.ci95[0][1] / second.deviation[0]), Math.log(first.deviation[0] / first.ci95[0][0]));
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', {name: 'CSV'}).first().click()]);
-  const [heading, row0] = readFileSync(await download.path(), 'utf8').split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
-  const at = heading.findIndex(name => name.includes('÷ pair-81'));
-  const [value, , high] = row0.slice(at, at + 3).map(Number);
-  assert.ok(at > 0 && Math.abs(Math.log(high / value) - wanted) < 1e-6, `${heading[at]}: ${value}, ${high}; ${wanted}`);
-  await closed(page);
-});
-
-test('conditions and fits are compared as recordings are, and nothing has the name of another', async () => {
-  const ids = [];
-  for (const seed of [84, 85]) ids.push(await recorded(noise(12000, seed, 0.1), {device: 'alike', id: 'static'}));
-  ids.push(await recorded(noise(12000, 86, 0.2), {device: 'alike', id: 'turning', condition: 'constant_rate:z:9:deg/s', columns: 'gz [deg/s]=angular_rate:z:deg/s'}));
-  const page = await open(browser, daemon, `/compare?with=${ids.slice(0, 2).join(',')}`);
-  const chips = page.locator('.chip');
-  await chips.filter({hasText: 'static (1)'}).waitFor();
-  await chips.filter({hasText: 'static (2)'}).waitFor();
-  assert.deepEqual((await page.getByRole('columnheader').allInnerTexts()).slice(1).map(each => each.slice(0, 10)), ['static (1)', 'static (2)']);
-  // A fit is the curve that it implies: the second becomes one, and has no points.
-  const {fit_ids: fits, result} = (await daemon.json(`/v1/recordings/${ids[1]}/characterisation`)).channels[0];
-  await page.getByLabel('Curve of static (2)').selectOption(fits[1]);
-  await page.waitForURL(url => url.searchParams.get('with') === `${ids[0]},${fits[1]}`);
-  await chips.filter({hasText: `static z`}).filter({hasText: result.fits[1].model}).waitFor();
-  const implied = (await daemon.json(`/v1/fits/${fits[1]}/implied`)).implied;
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', {name: 'CSV'}).first().click()]);
-  const [heading, row] = readFileSync(await download.path(), 'utf8').split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
-  const at = heading.findIndex(name => name.includes(result.fits[1].model) && !name.includes('÷'));
-  assert.ok(Math.abs(Number(row[at]) / (3600 * implied.ratio.deviation[0]) - 1) < 1e-9, `${heading[at]}: ${row[at]}, ${implied.ratio.deviation[0]}`);
-  await page.goBack();
-  await page.waitForURL(url => url.searchParams.get('with') === ids.slice(0, 2).join(','));
-  // Found by name: the device's conditions, whose parameters are those of the table.
-  await page.getByRole('button', {name: 'Add', exact: true}).click();
-  await page.getByLabel('Find what to compare').fill('alike');
-  await page.getByRole('button', {name: 'Conditions of alike'}).click();
-  await page.getByRole('button', {name: '9 deg/s', exact: true}).click();
-  await page.waitForURL(url => (url.searchParams.get('with') ?? '').endsWith(',alike~constant_rate%3Az%3A9%3Adeg%2Fs~gyroscope~z'));
-  const table = await daemon.json('/v1/parameter-tables?device=alike&sensor=gyroscope&axis=z');
-  const {value} = table.rows.find(each => each.condition.kind === 'constant_rate').values['white_noise.N'];
-  const cell = page.getByRole('row', {name: /white noise N/}).getByRole('cell').last();
-  await cell.getByText(/differs by/).waitFor();
-  assert.ok(Math.abs(Number((await cell.locator('b').innerText()).replace('\u202f', '')) / value - 1) < 0.01);
-  await page.getByRole('group', {name: 'Curve'}).getByRole('button', {name: 'Haar'}).click();
-  await page.getByRole('heading', {name: 'Haar deviation'}).waitFor();
-  await page.getByLabel('normalise').selectOption('1s');
-  await page.waitForURL(url => url.searchParams.get('fig') === 'haar' && url.searchParams.get('norm') === '1s');
-  await page.reload();
-  await page.getByText('Haar deviation ÷ its own at 1 s').first().waitFor();
-  await closed(page);
-});
-
 test('rows are 6 px higher where comfortable ones were chosen, after a reload too', async () => {
   const page = await open(browser, daemon, '/devices');
   const height = async () => (await page.locator('tbody tr').first().boundingBox()).height;
@@ -172,13 +111,22 @@ test('rows are 6 px higher where comfortable ones were chosen, after a reload to
 
 test('an outage evaluation shows what its runs say while they go on', {timeout: 300000}, async () => {
   const made = await daemon.json('/v1/outage-evaluations', {scenario: 'paper', runs: 400});
-  const page = await open(browser, daemon, `/outages/${made.id}`);
+  const page = await open(browser, daemon, `/outages/${made.id}`, {absent: [/outage-evaluations/]});
   const soFar = panel(page, 'Horizontal error so far');
   await soFar.locator('svg circle').first().waitFor({timeout: 240000});
   const running = await daemon.json(`/v1/outage-evaluations/${made.id}`);
   assert.equal(await soFar.locator('svg circle').count(), running.partial.filters.length);
   for (const {error_m: error} of running.partial.filters) assert.ok(error.ci95[0] < error.value && error.value < error.ci95[1], JSON.stringify(error));
   await page.getByText(/Running: what \d+ runs of 400 say\./).waitFor();
+  // A reading that is refused meanwhile says so above what is known, which stays.
+  await page.route('**/v1/outage-evaluations/*', route => route.fulfill({status: 422, contentType: 'application/problem+json', body: JSON.stringify({type: '/problems/busy', title: 'Busy', status: 422, detail: 'The daemon is busy.', retryable: true})}));
   await daemon.json(`/v1/jobs/${made.id}/cancel`, {});
+  const refusal = page.getByRole('alert').filter({hasText: 'The daemon is busy.'});
+  await refusal.waitFor();
+  assert.equal(await soFar.locator('svg circle').count(), running.partial.filters.length);
+  await page.unroute('**/v1/outage-evaluations/*');
+  await refusal.getByRole('button', {name: 'Try again'}).click();
+  await refusal.waitFor({state: 'detached'});
+  await page.getByText('The job was cancelled; there is no result.').waitFor();
   await closed(page);
 });

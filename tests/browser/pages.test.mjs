@@ -28,6 +28,9 @@ before(async () => {
   await daemon.finished(outages.id);
   const other = await daemon.upload(await (await fetch(`${daemon.address}/v1/samples/iphone5s-z?seed=8&condition=static`)).text(), {device: 'phone-07', condition: 'static', rate_hz: 100, id: 'run-8'});
   await daemon.characterise(other.id);
+  // Six parameters in a table.
+  const many = await daemon.upload(await (await fetch(`${daemon.address}/v1/samples/iphone5s-z?seed=9&condition=static`)).text(), {device: 'phone-08', condition: 'static', rate_hz: 100, id: 'run-9'});
+  await daemon.finished((await daemon.json('/v1/jobs', {kind: 'characterise', inputs: {recordings: [many.id]}, parameters: {models: ['WN+2GM']}})).id);
   const regress = await daemon.json('/v1/jobs', {kind: 'regress', inputs: {device: 'phone-07', baseline: {recordings: [{recording: ids[0]}]}, candidate: {recordings: [{recording: ids[1]}]}}});
   await daemon.finished(regress.id);
   const [listens, refuses] = [await receiver(204), await receiver(410)];
@@ -42,8 +45,8 @@ before(async () => {
   const [investigation] = (await daemon.json('/v1/investigations')).items;
   const [model] = (await daemon.json('/v1/models')).items;
   paths = {
-    lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
-    compare: `/compare?with=${ids[0]},${ids[2]}`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
+    lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', 'device-many': '/devices/phone-08', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
+    compare: `/compare?with=${ids[0]},${ids[2]},${model.id},sheet~L3G4200D~gyroscope`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
     outages: '/outages', 'outages-new': '/outages/new', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
     model: `/models/${model.id}`, regressions: '/regressions', regression: `/regressions/${regress.id}`, record: '/record',
     populations: '/populations', population: `/populations/${line.model}`, 'device-line': `/devices/${line.devices[0]}`, 'data-sheets': '/data-sheets', 'data-sheet': `/data-sheets/${line.model}`,
@@ -89,7 +92,7 @@ test('no page is wider than its screen, from 320 px, which is 1280 at 400 %, to 
     await page.setViewportSize({width: 320, height: 844});
     await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
     await settled(page);
-    for (const width of [320, 360, 390, 2560]) {
+    for (const width of [320, 360, 390, 768, 1200, 2560]) {
       await page.setViewportSize({width, height: 844});
       await page.evaluate(() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 60)))));
       const is = await page.evaluate(() => document.documentElement.scrollWidth);
@@ -105,6 +108,33 @@ test('no page is wider than its screen, from 320 px, which is 1280 at 400 %, to 
     wide.push(...long.map(([letters, text]) => `${name}: ${letters} letters a line: ${text}`));
   }
   assert.deepEqual(wide, []);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('what is refused says why in its place, and is read again when somebody asks', async () => {
+  const page = await open(browser, daemon, '/docs/units');
+  page.away = true;  // the refusals themselves
+  let refuses = true;
+  const refusal = {type: '/problems/busy', title: 'Busy', status: 503, detail: 'The daemon is busy.', code: 'busy', retryable: true, request_id: 'req_0'};
+  await page.route('**/v1/**', route => !refuses || /\/v1\/(session|events)/.test(route.request().url()) ? route.continue() : route.fulfill({status: 503, contentType: 'application/problem+json', body: JSON.stringify(refusal)}));
+  const silent = [];
+  for (const [name, path] of Object.entries(paths)) {
+    refuses = true;
+    await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
+    await page.locator('h1').first().waitFor();
+    const said = page.getByRole('alert').filter({hasText: 'The daemon is busy.'}).first();
+    if (!await said.waitFor({timeout: 2000}).then(() => true, () => false)) { silent.push(name); continue; }
+    await page.waitForFunction(() => !document.querySelector('[aria-busy=true]'), undefined, {timeout: 2000}).catch(() => silent.push(`${name} waits`));
+    refuses = false;
+    for (let i = 0; i < 9 && await said.isVisible(); ++i) {
+      await page.getByRole('button', {name: 'Try again'}).first().click({timeout: 2000}).catch(() => silent.push(`${name} is not read again`));
+      await page.waitForTimeout(200);
+    }
+    if (await said.isVisible()) silent.push(`${name} stays refused`);
+  }
+  // Pages that read nothing before somebody asks.
+  assert.deepEqual(silent, ['outages-new', 'upload', 'docs', 'manual', 'problem', 'record', 'absent'].filter(name => silent.includes(name)));
   assert.deepEqual(page.loud, []);
   await page.context().close();
 });

@@ -293,3 +293,15 @@ test('an investigation’s figure ranks the sinusoids it identified first and ma
   await page.waitForURL(url => !url.search.includes('finding'));
   await closed(page);
 });
+
+test('what needs an answer is counted, and is not sent with what is clear', async () => {
+  const file = (name, text) => ({name, mimeType: 'text/plain', buffer: Buffer.from(text)});
+  const page = await open(browser, daemon, '/upload');
+  await page.locator('input[type=file]').setInputFiles([file('clear.csv', csv(400, 75)), file('letters.csv', 'this is\nno table\n')]);
+  await page.getByLabel('Rate in Hz of clear.csv').fill('100');
+  await page.getByText('1 ready, 1 needs an answer').waitFor();
+  await page.getByRole('button', {name: 'Upload only'}).click();
+  await page.getByText('1 needs an answer, 1 stored').waitFor();
+  assert.equal((await daemon.json('/v1/recordings?device=letters')).items?.length ?? 0, 0);
+  await closed(page);
+});

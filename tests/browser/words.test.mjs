@@ -53,6 +53,14 @@ test('units and conditions are written as in print', async () => {
   assert.equal(conditionName({kind: 'constant_rate', axis: 'x', value: -9, unit: 'deg/s'}, 'z'), '\u22129 deg/s about x');
 });
 
+test('columns are named as schema/names.json has it, numbered from the second of a kind on', async () => {
+  const {columnName} = await source('pages/device/documents.ts');
+  assert.deepEqual(columnName('gauss_markov_1.beta'), {process: 'Gauss-Markov', symbol: 'β'});
+  assert.deepEqual(columnName('gauss_markov_2.sigma'), {process: 'Gauss-Markov 2', symbol: 'σ'});
+  assert.deepEqual(columnName('white_noise.N'), {process: 'White noise', symbol: 'N'});
+  assert.deepEqual(columnName('low_pass_1.corner_hz'), {process: 'Low-pass noise', symbol: 'corner'});
+});
+
 test('counts agree with their nouns, and moments of other days have a date', async () => {
   const {plural} = await source('format/words.ts');
   assert.deepEqual([plural(1, 'gap'), plural(2, 'gap'), plural(0, 'axis', 'axes'), plural(12345, 'sample')], ['1 gap', '2 gaps', '0 axes', '12\u202f345 samples']);

@@ -1348,6 +1348,16 @@ class GetImpliedCurvesAnswer(TypedDict):
     implied: RecordingCharacterisationImplied
 
 
+class GetModelImpliedCurvesAnswer(TypedDict):
+    model: str
+    recording: str
+    channel: str
+    processes: ModelProcesses
+    # Causes of effects on the channel that no curve holds; `unnamed`: profiles of what has no name.
+    left_out: list[str]
+    implied: RecordingCharacterisationImplied
+
+
 class GetSchemaAnswer(TypedDict):
     cases: list[GetSchemaAnswerCase]
 
@@ -4518,6 +4528,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/models/{id}', (), (), ('application/json',)),
     'deleteModel': Operation(
         'DELETE', '/v1/models/{id}', (), ('If-Match',), ()),
+    'getModelImpliedCurves': Operation(
+        'GET', '/v1/models/{id}/implied', ('recording', 'channel'), (), ('application/json',)),
     'getSession': Operation(
         'GET', '/v1/session', (), (), ('application/json',)),
     'openSession': Operation(

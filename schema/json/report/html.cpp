@@ -2,6 +2,7 @@
 
 #include "schema/figure/drawing.hpp"
 #include "schema/figure/paper.hpp"
+#include "schema/figure/printed_names.hpp"
 #include "schema/json/figures.hpp"
 
 namespace driftlab::page {
@@ -39,13 +40,13 @@ std::string html(const std::string& text) {
 }
 
 std::string verdict_html(const std::string& sentence) {
-  return sentence.empty() ? "" : "<p class=\"verdict\">" + html(sentence) + "</p>\n";
+  return sentence.empty() ? "" : "<p class=\"verdict\">" + html(printed_unit(sentence)) + "</p>\n";
 }
 
 std::string list_html(const Json& sentences) {
   std::string items;
   for (const Json& sentence : sentences) {
-    items += sentence.is_string() ? "<li>" + html(sentence.get<std::string>()) + "</li>\n" : "";
+    items += sentence.is_string() ? "<li>" + html(printed_unit(sentence.get<std::string>())) + "</li>\n" : "";
   }
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }

@@ -14,13 +14,13 @@ namespace driftlab::page {
 /// `text` with the characters of markup written out.
 [[nodiscard]] std::string html(const std::string& text);
 
-/// The sentence that a report begins with; nothing where there is none.
+/// The sentence that a report begins with, its units in print; nothing where there is none.
 [[nodiscard]] std::string verdict_html(const std::string& sentence);
 
 /// The sign of a level: fine, wrong, or to be looked at.
 [[nodiscard]] std::string mark_of(const std::string& level);
 
-/// The members of a list that are text; nothing where there are none.
+/// The members of a list that are text, with units in print; nothing where there are none.
 [[nodiscard]] std::string list_html(const Json& sentences);
 
 /// Tables that are aligned by blanks, in characters as small as their longest row needs on A4.

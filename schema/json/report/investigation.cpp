@@ -12,21 +12,24 @@ std::string parameters_of(const Json& params) {
   std::string text;
   for (const auto& [name, value] : params.items()) {
     if (value.is_object() && value.value("value", Json(nullptr)).is_number()) {
-      text += (text.empty() ? "" : "; ") + name + " = " + quantity_text(value);
+      text += (text.empty() ? "" : "; ") + parameter_name(name) + " = " + quantity_text(value);
     }
   }
   return text;
 }
 
+/// A cause as people write it.
+std::string cause_name(const Json& named) { return replaced(text_of(named, "cause"), "_", " "); }
+
 std::string finding_html(const Json& finding) {
   const auto status = text_of(finding, "status");
-  const std::string others = with_commas(finding.value("alternatives", Json::array()));
-  std::string text = "<section>\n<h2>" + html(finding.value("title", finding.at("cause").get<std::string>())) +
-                     "</h2>\n<p>" + html(text_of(finding, "explanation")) + "</p>\n";
+  const std::string others = replaced(with_commas(finding.value("alternatives", Json::array())), "_", " ");
+  std::string text = "<section>\n<h2>" + html(finding.value("title", cause_name(finding))) + "</h2>\n<p>" +
+                     html(printed_unit(text_of(finding, "explanation"))) + "</p>\n";
   if (const std::string equation = text_of(finding, "equation"); !equation.empty()) {
     text += "<p class=\"equation\">" + html(equation) + "</p>\n";
   }
-  text += "<p class=\"meta\">" + html(finding.at("cause").get<std::string>()) + ", " +
+  text += "<p class=\"meta\">" + html(cause_name(finding)) + ", " +
           html(status + (others.empty() ? "" : ": or " + others)) + "; " +
           html(with_commas(finding.value("channels", Json::array()))) + "</p>\n";
   std::string rows;
@@ -39,7 +42,7 @@ std::string finding_html(const Json& finding) {
     const bool bounded = ci95.is_array() && ci95.size() == 2 && ci95[0].is_number() && ci95[1].is_number();
     const double low = bounded ? ci95[0].get<double>() : 0.0;
     const double high = bounded ? ci95[1].get<double>() : 0.0;
-    rows += row_html({name, quantity_text(value),
+    rows += row_html({parameter_name(name), quantity_text(value),
                       bounded ? significant(low, low, high) + " to " + significant(high, low, high) : ""});
   }
   return text +
@@ -79,7 +82,8 @@ std::string extended_html(const Json& model) {
   std::string rows;
   const auto add = [&rows](const std::string& where, const Json& processes) {
     for (const Json& process : processes) {
-      rows += row_html({where, text_of(process, "process"), parameters_of(process.value("params", Json::object()))});
+      rows += row_html(
+          {where, process_name(text_of(process, "process")), parameters_of(process.value("params", Json::object()))});
     }
   };
   const Json channels = model.value("channels", Json::object());
@@ -90,7 +94,7 @@ std::string extended_html(const Json& model) {
     add(name, channel.value("processes", Json::array()));
   }
   for (const Json& effect : model.value("effects", Json::array())) {
-    rows += row_html({with_commas(effect.value("channels", Json::array())), text_of(effect, "cause"),
+    rows += row_html({with_commas(effect.value("channels", Json::array())), cause_name(effect),
                       parameters_of(effect.value("params", Json::object()))});
   }
   return table_html("Extended model", {"channel", "process or effect", "parameters"}, rows);
@@ -122,7 +126,7 @@ std::string investigation_html(const Json& document) {
           extended_html(document.value("extended_model", Json::object()));
   std::string unseen;
   for (const Json& one : document.value("not_examined", Json::array())) {
-    unseen += row_html({text_of(one, "channel"), text_of(one, "cause"), text_of(one, "needs")});
+    unseen += row_html({text_of(one, "channel"), cause_name(one), text_of(one, "needs")});
   }
   return text + table_html("Not examined", {"channel", "cause", "would need"}, unseen) +
          list_html(document.value("notes", Json::array()));

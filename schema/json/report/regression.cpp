@@ -29,11 +29,12 @@ std::string tests_html(const Json& units) {
         continue;
       }
       const Json tau = test.value("tau_s", Json(nullptr));
-      rows += row_html({unit_name(unit),
-                        tau.is_number() ? figure::tick_text(tau.get<double>()) + " s" : text_of(test, "name"),
-                        percent(test.at("ratio").get<double>()),
-                        percent(test.at("ci")[0].get<double>()) + " to " + percent(test.at("ci")[1].get<double>()),
-                        percent(test.at("margin").get<double>()), verdict});
+      rows +=
+          row_html({unit_name(unit),
+                    tau.is_number() ? figure::tick_text(tau.get<double>()) + " s" : column_name(text_of(test, "name")),
+                    percent(test.at("ratio").get<double>()),
+                    percent(test.at("ci")[0].get<double>()) + " to " + percent(test.at("ci")[1].get<double>()),
+                    percent(test.at("margin").get<double>()), verdict});
     }
   }
   return table_html("Tests", {"axis", "averaging time", "change", "interval, all tests at once", "margin", ""}, rows);

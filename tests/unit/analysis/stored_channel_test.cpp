@@ -93,6 +93,18 @@ TEST(ModelOfAStoredFit, LeavesOutWhatTheFitHasNothingOfAndIsNothingWhereAParamet
   EXPECT_FALSE(model_of(fit_of({walk}), Dimension::SpecificForce)) << "a walk of a rate is none of a force";
 }
 
+TEST(ModelOfAStoredFit, LeavesOutAWhiteNoiseInWhosePlaceAFasterProcessStands) {
+  // The words that a fit says of white noise alone were not taken for its absence: no curve was drawn at all.
+  ReportedProcess white = none("white_noise");
+  white.parameters.front().second.reason =
+      "The best fit of this model has no white noise of its own, for a faster process stands in its place; the density "
+      "N at low frequencies is given beside it.";
+  const auto model =
+      model_of(fit_of({white, told("gauss_markov", {1e-4, 0.1}, Dimension::AngularRate)}), Dimension::AngularRate);
+  ASSERT_TRUE(model);
+  EXPECT_EQ(model->size(), 1U);
+}
+
 TEST(DrawnAllan, ReadsALevelOffItsOwnCurveThoughAProcessBeforeItHasVanished) {
   const Dimension rate = Dimension::AngularRate;
   const double walk = 1e-4;  // rad/s/sqrt(s)

@@ -74,6 +74,14 @@ TEST(Verdict, SaysThatTheFirstOfTheRankingIsNotTheClosest) {
               testing::Contains("One more model is plausible: the data cannot tell it from the best."));
 }
 
+TEST(Verdict, SaysAReasonOnceThoughTheFitWarnsOfItToo) {
+  ReportedFit fit = fit_of("WN+GM", 0.2);
+  fit.processes.front().parameters.front().second = {{}, {}, {}, "", "The best fit has none."};
+  fit.warnings = {"The best fit has none.", "Something else."};
+  const Verdict verdict = verdict_of(channel_of({fit}), {});
+  EXPECT_THAT(verdict.details, testing::ElementsAre("N: The best fit has none.", "Something else."));
+}
+
 TEST(Verdict, SaysWhatGrossErrorsAndAnotherShapeDo) {
   ReportedChannel channel = channel_of({fit_of("WN+GM", 0.2)});
   EXPECT_THAT(verdict_of(channel, {true, 6, 18}).sentence, HasSubstr("The noise is not Gaussian"));

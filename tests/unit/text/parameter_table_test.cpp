@@ -1,5 +1,7 @@
 #include "schema/text/parameter_table.hpp"
 
+#include "schema/text/in_print.hpp"
+
 #include <gtest/gtest.h>
 
 namespace driftlab {
@@ -48,6 +50,17 @@ TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
             "static            1.000 [0.9500, 1.050]   …      …\n"
             "9 deg/s about z   1235 [1200, …]          …      …\n"
             "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
+}
+
+TEST(TableText, InPrintHasTheNamesAndUnitsOfTheFieldUnderTheSameRules) {
+  ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05))});
+  found.columns = {{"white_noise.N", "deg/sqrt(h)"}, {"gauss_markov_1.sigma", "deg/h"}, {"gauss_markov_1.beta", "1/s"}};
+  EXPECT_EQ(table_to_text(in_print(found), false),
+            "phone-07, gyroscope z, Allan variance\n\n"
+            "condition  white noise N          Gauss-Markov σ  Gauss-Markov β\n"
+            "           deg/√h                 deg/h           1/s\n"
+            "---------  ---------------------  --------------  --------------\n"
+            "static     1.000 [0.9500, 1.050]  …               …\n");
 }
 
 TEST(TableText, NamesTheRowThatChangesAreAgainst) {

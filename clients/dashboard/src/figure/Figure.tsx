@@ -63,7 +63,9 @@ export interface ToolsProps {
 }
 
 export function Tools({onTable, tableShown, onSvg, onCsv, curl, how, title}: ToolsProps): JSX.Element {
-  return <><div class="tools">
+  const [isOpen, setOpen] = useState(false);
+  return <><div class={`tools folds${isOpen ? ' open' : ''}`}>
+    <button type="button" class="quiet more" aria-label={`Tools of ${title}`} aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>⋯</button>
     {onTable && <button type="button" class="quiet" aria-pressed={tableShown ?? false} onClick={onTable}>Table</button>}
     {onSvg && <button type="button" class="quiet" onClick={onSvg}>SVG</button>}
     {onCsv && <button type="button" class="quiet" onClick={onCsv}>CSV</button>}

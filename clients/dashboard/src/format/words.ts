@@ -1,8 +1,9 @@
 // Names of the field, in print: what the API writes in ASCII and snake_case never reaches a page.
+import {parameters, processes} from '../../../../schema/names.json';
 import {writeCount} from './number';
 
-const PROCESSES: Record<string, string> = {linear_drift: 'drift', quantization_noise: 'quantization'};
-const SYMBOLS: Record<string, string> = {sigma: 'σ', beta: 'β', omega: 'ω', tau: 'τ'};
+const PROCESSES: Record<string, string> = processes;
+const SYMBOLS: Record<string, string> = parameters;
 const CONVENTIONS: Record<string, string> = {
   ieee_952: 'IEEE 952', density_two_sided: 'density, two-sided', density_one_sided: 'density, one-sided', kalibr_noise_density: 'Kalibr',
   kalibr_random_walk: 'Kalibr', per_sample: 'per sample', step_per_sample: 'step per sample',
@@ -13,12 +14,13 @@ export const capital = (text: string): string => text.charAt(0).toUpperCase() + 
 export const spaced = (name: string): string => name.replace(/_/g, ' ').replace(/\bgauss markov\b/, 'Gauss-Markov');
 
 export const processName = (name: string): string => PROCESSES[name] ?? spaced(name);
-export const symbolOf = (parameter: string): string => SYMBOLS[parameter] ?? parameter;
+// frequency_hz -> frequency: its unit stands beside the values.
+export const symbolOf = (parameter: string): string => SYMBOLS[parameter] ?? parameter.replace(/_(hz|s|deg)$/, '').replace(/_/g, ' ');
 export const conventionName = (name: string): string => CONVENTIONS[name] ?? spaced(name);
 
 // deg/sqrt(h) -> deg/√h, m/s^2 -> m/s²
 export function writeUnit(unit: string | null | undefined): string {
-  if (!unit) return '';
+  if (!unit || unit === '1') return '';
   return unit.replace(/sqrt\(([^)]*)\)/g, '√$1').replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/\*/g, '·').replace(/\bug\b/g, 'µg');
 }
 

@@ -50,7 +50,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
   const device = useRead<Device>(`/v1/devices/${found.device}`);
   const recordings = useRead<List<Recording>>(`/v1/recordings?device=${found.device}&limit=500`);
   const names = new Map((recordings.data?.items ?? []).map(one => [one.id, one.metadata.id ?? one.id] as const));
-  const ids = new Set(found.checks.map(check => check.recording).filter(Boolean));
+  const ids = new Set([...found.checks.map(check => check.recording), ...found.findings.flatMap(finding => finding.channels.map(channel => /^rec_[0-9A-Z]{26}/.exec(channel)?.[0]))].filter(Boolean));
   const {gain} = found;
   const outage = gain.outage_error_m;
   const groups = grouped(found.findings);
@@ -62,8 +62,8 @@ function Found({found}: {found: Investigation}): JSX.Element {
   const causes = new Set((found.not_examined ?? []).map(each => each.cause)).size;
   return <>
     <Head crumb={[['Investigations', '/investigations'], [device.data?.name ?? '…', device.data ? pageOf('devices', device.data.name) : null]]} title={title}
-      facts={[plural(ids.size, 'recording'), `baseline ${found.baseline.processes.map(process => processName(process.process)).join(' + ')}`, writeWhen(found.created_at)]}
-      actions={<>{found.model && <a class="btn" href={pageOf('models', found.model)}>Extended model</a>}<a class="btn" href={pageOf('jobs', found.job)}>Job</a><Report /></>} />
+      facts={[plural(ids.size, 'recording'), found.baseline.processes.length > 0 && `baseline ${found.baseline.processes.map(process => processName(process.process)).join(' + ')}`, writeWhen(found.created_at)]}
+      actions={<>{found.model && <><a class="btn" href={`/compare?with=${[found.baseline_model, found.model].filter(Boolean).join(',')}`}>Compare models</a><a class="btn" href={pageOf('models', found.model)}>Extended model</a></>}<a class="btn" href={pageOf('jobs', found.job)}>Job</a><Report /></>} />
     <p class="verdict">{sentence(found)}<small>{(found.summary?.details ?? found.unexplained.map(one => one.explanation)).map(writeSentence).join(' ')} {causes > 0 ? `${capital(countWord(causes))} cause${causes === 1 ? '' : 's'} could not be examined with these recordings.` : ''}</small></p>
     <section class="panel figures4">
       <div><span class="sec">failed checks, of {found.checks.length}</span><strong>{gain.checks_failed_before} → {gain.checks_failed_after}</strong><span class="u">5 % false alarms over all of them together</span></div>

@@ -94,7 +94,7 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
       <tbody>{devices.length === 0 && <tr><td colSpan={6} class="sec">No device has “{query.get('q')}” in its name, model or serial.</td></tr>}{devices.map(device => {
         const channels = of(device);
         return <tr key={device.id}>
-          <th scope="row"><a href={pageOf('devices', device.name)}>{device.name}</a></th>
+          <th scope="row" class="who"><a href={pageOf('devices', device.name)}>{device.name}</a></th>
           <td class="n" data-label="recordings">{device.summary?.recordings ?? '–'}</td>
           <td class="sec">{conditionsOf(device)}</td>
           <td class="desk-only" style={{width: '34%'}}><Levels channels={channels} scale={scale} /></td>
@@ -142,6 +142,8 @@ export default function Lab(): JSX.Element {
   const wants = all.filter(item => item.at > seen);
   const mark = (until: string): void => { localStorage.setItem(SEEN, until); setSeen(until); };
   const known = counts.data && jobs.data;
+  const refused = [counts, jobs].find(read => read.problem);
+  const unread = refused ? <Refusal problem={refused.problem!} again={refused.again} /> : <Hairlines />;
   return <>
     <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} actions={<a class="btn" href="/record">Record this phone</a>} />
     {known && counts.data && <p class="verdict">{opening(counts.data, wants.length, all.length > 0)}</p>}
@@ -149,11 +151,11 @@ export default function Lab(): JSX.Element {
       <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}
         tools={all.length > 0 && <div class="tools">{wants.length > 0 ? <button type="button" class="quiet" onClick={() => mark(wants[0]!.at)}>Mark all seen</button>
           : <button type="button" class="quiet" onClick={() => mark('')}>Show what was seen</button>}</div>}>
-        {!known ? <Hairlines /> : wants.length === 0 ? <p class="sec">{all.length > 0 ? 'Nothing that was not seen.' : 'Nothing. Every newest result is fine, and no job failed.'}</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
+        {!known ? unread : wants.length === 0 ? <p class="sec">{all.length > 0 ? 'Nothing that was not seen.' : 'Nothing. Every newest result is fine, and no job failed.'}</p> : <ul class="rows looks">{wants.map(item => <li key={item.href}>
           <span class="nowrap"><span class={`g ${item.bad ? 'bad' : 'warn'}`} aria-hidden="true">{item.bad ? '✗' : '△'} </span><b>{item.who}</b></span>
           <span class="grow"><a href={item.href}>{item.text}</a></span><span class="dim nowrap">{writeWhen(item.at)}</span></li>)}</ul>}
       </Panel>
-      {jobs.data ? <Running jobs={recent} /> : <Panel title="Running"><Hairlines /></Panel>}
+      {jobs.data ? <Running jobs={recent} /> : <Panel title="Running">{unread}</Panel>}
     </div>
     {devices.data ? <Devices devices={list} next={devices.data.next_cursor} /> : devices.problem ? <Panel title="Devices"><Refusal problem={devices.problem} again={devices.again} /></Panel> : <Panel title="Devices"><Hairlines /></Panel>}
   </>;

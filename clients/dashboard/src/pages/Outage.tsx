@@ -2,7 +2,7 @@
 import type {JSX} from 'preact';
 import {useJobEvents, useRead} from '../api/client';
 import {writeDuration, writeWhen} from '../format/time';
-import {plural, writeSentence} from '../format/words';
+import {capital, plural, writeSentence} from '../format/words';
 import {Drawn} from '../figure/Drawn';
 import type {Table} from '../figure/export';
 import {choose, usePlace} from '../route';
@@ -74,8 +74,8 @@ export default function OutagePage(): JSX.Element {
   useTitle(read.data ? `Outages: ${read.data.scenario_name}` : 'Outages');
   return <Shown read={read} page="Outages">{stored => <>
     <Head crumb={[['Outages', '/outages'], [stored.scenario_name, null]]} title={`Simulated outages: ${stored.scenario_name}`}
-      facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
+      facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : stored.state]} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
     <MadeBy job={stored.id} document={`/v1/outage-evaluations/${stored.id}`} />
-    {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : stored.partial ? `Running: what ${plural(stored.partial.runs, 'run')} of ${stored.runs} say.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}{!stored.finished_at && stored.partial && <SoFar partial={stored.partial} />}</>}
+    {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail} {stored.problem.type && <a href={stored.problem.type}>{stored.problem.title}</a>}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : stored.partial ? `Running: what ${plural(stored.partial.runs, 'run')} of ${stored.runs} say.` : `${capital(stored.stage ?? 'waiting for a worker')}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}{!stored.finished_at && stored.partial && <SoFar partial={stored.partial} />}</>}
   </>}</Shown>;
 }

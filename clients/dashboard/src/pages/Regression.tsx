@@ -125,6 +125,6 @@ export default function Regression(): JSX.Element {
     {job.data?.finished_at && job.data.state !== 'succeeded' && <p class="verdict"><span class="g bad" aria-hidden="true">✗ </span>{job.data.problem?.detail ?? `The run is ${job.data.state}.`}</p>}
     {read.problem && <Refusal problem={read.problem} again={read.again} />}
     {document && <MadeBy job={id} document={`/v1/regressions/${id}`} />}
-    {document ? <Shown document={document} /> : job.data?.state === 'succeeded' && !read.problem && <Hairlines />}
+    {document ? <Shown document={document} /> : (job.data?.state ?? 'succeeded') === 'succeeded' && !job.problem && !read.problem && <Hairlines />}
   </>;
 }

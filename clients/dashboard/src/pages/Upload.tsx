@@ -13,7 +13,7 @@ import {useTitle} from '../shell/title';
 import {Columns} from './upload/Columns';
 import {ConditionField} from './upload/ConditionField';
 import {DropZone, filesOf} from './upload/DropZone';
-import {change, remove, usePending, type Pending} from './upload/pending';
+import {change, isUnclear, remove, toSend, usePending, type Pending} from './upload/pending';
 import {Repair} from './upload/Repair';
 import {following, pause, runSample, sendAll, sendOne, take, takeHanded, takeSample} from './upload/run';
 import {commandOf} from './upload/send';
@@ -68,7 +68,10 @@ export default function Upload(): JSX.Element {
     return () => { document.removeEventListener('dragover', over); document.removeEventListener('drop', drop); };
   }, []);
   const chosen = files.find(each => String(each.key) === query.get('file')) ?? files.find(each => each.state === 'refused') ?? files[0];
-  const open = files.filter(each => each.state !== 'sent');
+  const open = toSend(files);
+  const unclear = files.filter(isUnclear).length;
+  const count = (state: Pending['state']): number => files.filter(each => each.state === state).length;
+  const states = [[count('ready') - unclear, 'ready'], [unclear, unclear === 1 ? 'needs an answer' : 'need an answer'], [count('sending'), 'uploading'], [count('paused'), 'paused'], [count('sent'), 'stored'], [count('refused'), 'refused']] as const;
   const run = (work: () => Promise<void>): void => {
     setBusy(true);
     setProblem(undefined);
@@ -79,7 +82,7 @@ export default function Upload(): JSX.Element {
     <Head title="Upload" facts={[]} />
     <DropZone onFiles={received} onSample={() => run(runSample)} />
     {problem && <Panel><Refusal problem={problem} /></Panel>}
-    {files.length > 0 && <Panel title={`${files.length} file${files.length === 1 ? '' : 's'}`} sub={`${files.filter(each => each.state === 'sent').length} stored, ${files.filter(each => each.state === 'refused').length} refused`}
+    {files.length > 0 && <Panel title={`${files.length} file${files.length === 1 ? '' : 's'}`} sub={states.flatMap(([n, word]) => n > 0 ? `${n} ${word}` : []).join(', ')}
       tools={<label class="right"><input type="checkbox" checked={analyse} onChange={() => setAnalyse(!analyse)} /> {following()} when uploaded</label>}>
       <div class="scroll"><table class="files stacked">
         <thead><tr><th scope="col">file</th><th scope="col">device</th><th scope="col">condition</th><th scope="col" class="n">size</th><th scope="col" class="n">rate, Hz</th><th scope="col">state</th><th scope="col"><span class="visually-hidden">Remove</span></th></tr></thead>
@@ -88,7 +91,7 @@ export default function Upload(): JSX.Element {
     </Panel>}
     {chosen && <Columns each={chosen} />}
     {open.length > 0 && <div class="row" style={{marginTop: '16px'}}>
-      <button type="button" class="btn primary" disabled={busy} onClick={() => run(() => sendAll(analyse))}>Upload {open.length === 1 ? '' : countWord(open.length)}{analyse ? ` and ${following()}` : ''}</button>
+      <button type="button" class="btn primary" disabled={busy} onClick={() => run(() => sendAll(analyse))}>Upload {files.length === 1 ? '' : countWord(open.length)}{analyse ? ` and ${following()}` : ''}</button>
       {analyse && <button type="button" class="btn" disabled={busy} onClick={() => run(() => sendAll(false))}>Upload only</button>}
     </div>}
     {chosen && chosen.state !== 'sent' && <p class="note">The same as a command: <code>{commandOf(chosen)}</code> <button type="button" class="link" onClick={() => copy(commandOf(chosen), 'The command is')}>Copy</button></p>}

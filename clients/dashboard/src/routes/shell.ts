@@ -10,6 +10,8 @@ import {writeBytes, writeCount, writeNumber, writeP, writeQuantity, writeShare, 
 import {writeDuration, writeFull, writeToday, writeWhen} from '../format/time';
 import {capital, conditionName, countWord, jobKind, listWords, plural, processName, sensorOf, spaced, symbolOf, writeSentence, writeUnit} from '../format/words';
 import {choose, go, hover, listOf, pageOf, usePlace} from '../route';
+import {sourceOf, useSheets, writeStated} from '../pages/datasheet/documents';
+import {ConditionField} from '../pages/upload/ConditionField';
 import {Characterise} from '../shell/Characterise';
 import {copy, curlOf} from '../shell/copy';
 import {Delete} from '../shell/Delete';
@@ -27,4 +29,4 @@ Object.freeze([Fragment, useEffect, useId, useLayoutEffect, useMemo, useRef, use
   writeBytes, writeCount, writeNumber, writeP, writeQuantity, writeShare, writeTick, writeDuration, writeFull, writeToday, writeWhen,
   capital, conditionName, countWord, jobKind, listWords, plural, processName, sensorOf, spaced, symbolOf, writeSentence, writeUnit,
   choose, go, hover, listOf, pageOf, usePlace, Characterise, copy, curlOf, Delete, openDrawer, Head, Verdict, usePageKeys, LastResult, say, Sought,
-  Hairlines, Panel, Progress, Refusal, Segments, Shown, useTitle]);
+  Hairlines, Panel, Progress, Refusal, Segments, Shown, useTitle, sourceOf, useSheets, writeStated, ConditionField]);

@@ -23,10 +23,11 @@ export function Refusal({problem, again}: {problem: Problem; again?: (() => void
   </div>;
 }
 
-// What was read, or how reading goes. `page`: what the page would show, where all of it rests on what is read.
+// What was read, or how reading goes; a refusal to read it again stands above what was read before. `page`: what the page would show, where all of it rests on what is read.
 export function Shown<T>({read, page, children}: {read: Read<T>; page?: string; children: (data: T) => ComponentChildren}): JSX.Element {
-  if (read.data !== undefined) return <>{children(read.data)}</>;
-  if (read.problem) return <>{page && <h1>{page}</h1>}<Refusal problem={read.problem} again={read.again} /></>;
+  const refusal = read.problem && <Refusal problem={read.problem} again={read.again} />;
+  if (read.data !== undefined) return <>{refusal}{children(read.data)}</>;
+  if (refusal) return <>{page && <h1>{page}</h1>}{refusal}</>;
   return <Hairlines />;
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import cast
 
-from ..contract import Calibration, CalibrationSensors, Drive, Model
+from ..contract import Calibration, CalibrationSensors, Drive, GetModelImpliedCurvesAnswer, Model
 from ..contract import ModelRequest, StoredDrive, StoredStudy, StudyBaseline, StudyRequestRecording
 from .base import PAGE, Routes, SortByName, given, operation
 
@@ -63,6 +63,11 @@ class StudyRoutes(Routes):
     def model(self, id: str) -> Model:
         """One model."""
         return cast(Model, self._get("getModel", {"id": id}))
+
+    @operation("getModelImpliedCurves")
+    def model_implied(self, id: str, recording: str, channel: str) -> GetModelImpliedCurvesAnswer:
+        """What a simulation model implies at the averaging times of a characterised channel, and what was measured over it."""
+        return cast(GetModelImpliedCurvesAnswer, self._get("getModelImpliedCurves", {"id": id}, {"recording": recording, "channel": channel}))
 
     @operation("deleteModel")
     def delete_model(self, id: str, *, if_match: str | None = None) -> None:

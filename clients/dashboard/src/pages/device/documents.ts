@@ -1,4 +1,5 @@
 import type {Condition, Ends, Quantity, Summary} from '../../api/documents';
+import {capital, processName, spaced, symbolOf} from '../../format/words';
 
 export interface Cell extends Quantity { value: number; unit: string; ci95: Ends; change: 'up' | 'down' | 'none' | null; ratio: Quantity | null }
 export interface TableRow {
@@ -34,7 +35,6 @@ export function colours(rows: readonly {condition: Condition}[]): string[] {
   });
 }
 
-const NAMES: Record<string, string> = {white_noise: 'White noise', gauss_markov: 'Gauss-Markov', random_walk: 'Random walk', linear_drift: 'Drift', quantization_noise: 'Quantization', flicker_noise: 'Flicker noise', resonance: 'Resonance', low_pass_1: 'Low-pass noise', low_pass_2: 'Low-pass noise', moving_average: 'Averaged noise', decimation: 'Decimated noise', power_law: 'Power law', low_frequency: 'At low frequencies'};
 const DENSITY = 'low_frequency.N';
 
 // The table of a model begins with N, the density at low frequencies whatever the model; that of the Allan variance has N among its columns.
@@ -49,9 +49,9 @@ export function withDensity(table: ParameterTable): ParameterTable {
 export function columnName(key: string): {process: string; symbol: string} {
   const [process = '', parameter] = key.split('.');
   if (!parameter) return {process: '', symbol: key};
-  const [, name = process, number] = /^(.*?)(?:_(\d))?$/.exec(process) ?? [];
-  const symbol = {sigma: 'σ', beta: 'β'}[parameter] ?? parameter;
-  return {process: `${NAMES[name] ?? name.replace(/_/g, ' ')}${number && number !== '1' ? ` ${number}` : ''}`, symbol};
+  // low_pass_1 is a name, gauss_markov_1 the first of its kind.
+  const [, kind = process, number] = (processName(process) === spaced(process) && /^(.+)_(\d)$/.exec(process)) || [];
+  return {process: `${capital(processName(kind))}${number && number !== '1' ? ` ${number}` : ''}`, symbol: symbolOf(parameter)};
 }
 
 /// The symbol of a column; with its process where another column has the same one.

@@ -1,5 +1,6 @@
 // Where it was looked, and how much: recordings and axes against kinds of checks.
 import type {JSX} from 'preact';
+import {plural} from '../../format/words';
 import {usePlace} from '../../route';
 import {checkKind, columnOf, keyOf, restsOn, type Check, type Investigation} from './documents';
 
@@ -17,11 +18,13 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
   const rows = [...new Set(found.checks.map(check => `${check.recording ?? ''}\u0001${columnOf(check.channel)}`))];
   const kinds = [...new Set(found.checks.map(checkKind))];
   const at = new Map<string, Check>(found.checks.map(check => [`${check.recording ?? ''}\u0001${columnOf(check.channel)}\u0001${checkKind(check)}`, check] as const));
+  // Names lean to the right, over the last column.
+  const width = LEFT + kinds.length * CELL + 110;
   const failed = found.checks.filter(check => check.failed);
   const lit = usePlace().query.get('lit');
   const marked = new Set(found.findings.filter(finding => keyOf(finding, found.findings) === lit).flatMap(finding => restsOn(finding, found.checks)));
   return <>
-    <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg viewBox={`0 0 ${LEFT + kinds.length * CELL + 70} ${TOP + rows.length * CELL + 6}`} width={LEFT + kinds.length * CELL + 70} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
+    <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg viewBox={`0 0 ${width} ${TOP + rows.length * CELL + 6}`} width={width} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
       {kinds.map((kind, i) => <text key={kind} class="s" transform={`translate(${LEFT + i * CELL + 14},${TOP - 8}) rotate(-52)`}>{kind}</text>)}
       {rows.map((row, j) => {
         const [recording = '', column = ''] = row.split('\u0001');
@@ -41,6 +44,6 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
         </g>;
       })}
     </svg></div>
-    <p class="note"><b style={{color: 'var(--robust)'}}>■</b> fails and no finding explains it · <b style={{color: 'var(--robust)'}}>□</b> the findings mend it · ● p &lt; 0.05 but not after correction for {found.checks.length} checks · · agrees</p>
+    <p class="note"><b style={{color: 'var(--robust)'}}>■</b> fails and no finding explains it · <b style={{color: 'var(--robust)'}}>□</b> the findings mend it · ● p &lt; 0.05 but not after correction for {plural(found.checks.length, 'check')} · · agrees</p>
   </>;
 }

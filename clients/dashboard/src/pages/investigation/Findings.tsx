@@ -11,9 +11,6 @@ import {axisOf, causeName, checkKind, columnOf, keyOf, restsOn, type Check, type
 const MOST_BAR = 1000;
 const WIDTH = 132;
 
-// frequency_hz -> frequency: its unit stands beside the values.
-const titleOf = (name: string): string => symbolOf(name.replace(/_(hz|s|deg)$/, '').replace(/_/g, ' '));
-
 type Axis = (value: number) => number;
 
 // What the intervals of a parameter share, from zero on; null where there is nothing to compare.
@@ -50,7 +47,7 @@ export function Findings({list, found, names, total}: {list: readonly Finding[];
   const size = parameters[0] ?? '';
   const axis = axisFor(list.map(finding => finding.parameters[size]));
   const columns = 4 + parameters.length + (axis ? 1 : 0);
-  return <div class="scroll"><table class="stacked findings"><thead><tr><th scope="col">axis</th>{parameters.map(name => <th key={name} scope="col">{titleOf(name)}</th>)}{axis && <th scope="col" class="desk-only"><span class="visually-hidden">{titleOf(size)} on a shared axis</span></th>}<th scope="col">recordings</th><th scope="col">evidence, over 6 identifies</th><th scope="col" class="n">held-out gain, 10⁻³ nats a sample</th></tr></thead>
+  return <div class="scroll"><table class="stacked findings"><thead><tr><th scope="col">axis</th>{parameters.map(name => <th key={name} scope="col">{symbolOf(name)}</th>)}{axis && <th scope="col" class="desk-only"><span class="visually-hidden">{symbolOf(size)} on a shared axis</span></th>}<th scope="col">recordings</th><th scope="col">evidence, over 6 identifies</th><th scope="col" class="n">held-out gain, 10⁻³ nats a sample</th></tr></thead>
     {list.map(finding => {
       const id = keyOf(finding, found.findings);
       const open = query.get('finding') === id;
@@ -59,7 +56,7 @@ export function Findings({list, found, names, total}: {list: readonly Finding[];
       const rivals = finding.rivals ?? [];
       return <tbody key={id} class={`finding ${finding.status}`} aria-current={open ? 'true' : undefined}>
         <tr><th scope="row">{[...new Set(finding.channels.map(axisOf))].join(', ')}</th>
-          {parameters.map(name => <td key={name} data-label={titleOf(name)}><Size quantity={finding.parameters[name]} /></td>)}
+          {parameters.map(name => <td key={name} data-label={symbolOf(name)}><Size quantity={finding.parameters[name]} /></td>)}
           {axis && <td class="desk-only"><Whisker quantity={finding.parameters[size]} x={axis.x} /></td>}
           <td class="sec">{recordings.length === 0 || recordings.length === total ? `all ${total || ''}` : recordings.length === 1 ? `${names.get(recordings[0]!) ?? 'one'} only` : `${recordings.length} of ${total}`}</td>
           <td class="nowrap" data-label="evidence"><svg width="90" height="8" aria-hidden="true"><rect x="0" y="1" width={Math.min(90, Math.log1p(Math.max(score, 0)) / Math.log1p(MOST_BAR) * 90)} height="5" fill="var(--model)" /></svg> {writeNumber(score, 3)}</td>

@@ -1,4 +1,4 @@
-import type {Ends, Nullable, Quantity, Summary} from '../../api/documents';
+import type {Ends, Nullable, Quantity, StoredProblem, Summary} from '../../api/documents';
 
 export interface Ellipse { fraction: number; semi_major_m: number; semi_minor_m: number; major_axis_azimuth_deg: number }
 export interface Moments { ellipses: Ellipse[] }
@@ -16,6 +16,6 @@ export interface Evaluation {
 }
 // What is known while runs go on.
 export interface Partial { runs: number; filters: {name: string; error_m: Quantity}[] }
-export interface StoredEvaluation { partial?: Partial | null; id: string; scenario_name: string; runs: number; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: {detail: string} | null; evaluation: Evaluation | null }
+export interface StoredEvaluation { partial?: Partial | null; id: string; scenario_name: string; runs: number; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: StoredProblem | null; evaluation: Evaluation | null }
 
 export const at95 = (ellipses: readonly Ellipse[]): Ellipse | undefined => ellipses.find(each => Math.abs(each.fraction - 0.95) < 0.01);

@@ -32,7 +32,7 @@ function spectrumPlots(spectrum: SpectrumDocument, fit: ModelFit | undefined, im
     const nth = seen.get(component.process) ?? 0;
     seen.set(component.process, nth + 1);
     const style = styleOf(component.process, nth);
-    return {id: `component-${i}`, name: processName(component.process), x: implied.spectrum.f_hz, y: times(component.density, square), line: true, colour: style.colour, dash: style.dash};
+    return {id: `component-${i}`, name: processName(component.process) + (nth > 0 ? ` ${nth + 1}` : ''), x: implied.spectrum.f_hz, y: times(component.density, square), line: true, colour: style.colour, dash: style.dash};
   }) : [];
   const model: Series[] = implied && fit ? [{id: 'model', name: fit.model, detail: 'from the fit', x: implied.spectrum.f_hz, y: times(implied.spectrum.density, square), line: true, colour: 'var(--model)', width: 2}] : [];
   // What was measured decides the heights; a component that fades out below it is cut.

@@ -28,7 +28,9 @@ export function stripPlots(runs: readonly RegressionRun[]): Plot[] {
       mark: MARKS[verdict][0], colour: MARKS[verdict][1], noKey: i > 0,
     }));
     // Runs that say nothing of the parameter do not break the margin.
-    const told = tests.flatMap((test, j) => test ? [{run: j + 1, limit: test.margin}] : []);
+    const known = tests.flatMap((test, j) => test ? [{run: j + 1, limit: test.margin}] : []);
+    // That of one run alone has a width, or it could not be seen.
+    const told = known.length === 1 ? [-0.5, 0.5].map(half => ({...known[0]!, run: known[0]!.run + half})) : known;
     const limits = told.map(({limit}) => limit);
     const margin: Series = {id: 'margin', name: 'margin', x: told.map(({run}) => run), y: limits, low: limits.map(() => 1), high: limits, band: 'var(--robustband)', line: true, colour: 'var(--robust)', dash: '7 4', width: 1.2, noKey: i > 0};
     const last = i === axes.length - 1;

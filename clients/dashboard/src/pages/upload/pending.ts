@@ -42,6 +42,15 @@ export function usePending(): readonly Pending[] {
 
 export const pending = (): readonly Pending[] => list;
 
+// What would be refused as it stands: its sentence stands beside the field that mends it.
+export const isUnclear = (each: Pending): boolean => each.state === 'ready' && (each.look?.document?.problems.length ?? 0) > 0;
+// What an upload sends: what is clear, or all there is, for the daemon to decide.
+export function toSend(all: readonly Pending[]): readonly Pending[] {
+  const open = all.filter(each => each.state !== 'sent');
+  const clear = open.filter(each => !isUnclear(each));
+  return clear.length > 0 ? clear : open;
+}
+
 // --- the daemon is asked again once what was said of a file has changed, and nobody types any more
 const PAUSE_MS = 300;
 const waiting = new Map<number, ReturnType<typeof setTimeout>>();

@@ -2,7 +2,7 @@
 import {ask, Problem} from '../../api/client';
 import {go, pageOf} from '../../route';
 import {characterise} from '../../shell/Characterise';
-import {addFiles, change, pending, remember, type Pending} from './pending';
+import {addFiles, change, pending, remember, toSend, type Pending} from './pending';
 import {Paused, upload} from './send';
 import {investigated, matched, readStudy, type Study} from './study';
 
@@ -54,7 +54,7 @@ export const following = (): 'investigate' | 'characterise' => whole() ? 'invest
 
 // Sends all that waits and, where it is asked for, characterises it and goes to its figures. What is refused keeps the page.
 export async function sendAll(analyse: boolean): Promise<void> {
-  const waiting = pending().filter(each => each.state !== 'sent').map(each => each.key);
+  const waiting = toSend(pending()).map(each => each.key);
   for (const each of pending().filter(one => waiting.includes(one.key))) await sendOne(each);
   const sent = pending().filter(each => waiting.includes(each.key) && each.state === 'sent');
   if (!analyse) return;
