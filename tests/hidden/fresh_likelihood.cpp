@@ -356,6 +356,42 @@ double correlation_gain(const std::vector<ChannelScore>& channels) {
 
 }  // namespace
 
+bool has_equation(const std::string& cause) {
+  static const std::set<std::string> known{"white_noise_level",
+                                           "gauss_markov",
+                                           "random_walk",
+                                           "flicker_noise",
+                                           "quantization_noise",
+                                           "turn_on_bias",
+                                           "rate_dependent_noise",
+                                           "acceleration_dependent_noise",
+                                           "noise_level_change",
+                                           "heavy_tailed_noise",
+                                           "outliers",
+                                           "output_resolution",
+                                           "common_mode_noise",
+                                           "band_limited_noise",
+                                           "linear_drift",
+                                           "bias_step",
+                                           "warm_up_transient",
+                                           "scale_factor_error",
+                                           "scale_factor_asymmetry",
+                                           "scale_factor_nonlinearity",
+                                           "reference_time_offset",
+                                           "reference_clock_drift",
+                                           "axis_misalignment",
+                                           "g_sensitivity",
+                                           "lever_arm",
+                                           "temperature_bias",
+                                           "vibration_rectification",
+                                           "periodic_disturbance",
+                                           "once_per_revolution",
+                                           "stuck_samples",
+                                           "missing_samples",
+                                           "saturation"};
+  return known.contains(cause);
+}
+
 double log_likelihood(const Baseline& model, const SimulatedStudy& data, const std::vector<Hidden>& facts) {
   double sum = 0.0;
   std::vector<ChannelScore> channels;

@@ -12,6 +12,9 @@
 
 namespace driftlab::hidden {
 
+/// Whether this likelihood has the equation of a cause, or leaves the samples out that it spoils.
+[[nodiscard]] bool has_equation(const std::string& cause);
+
 /// Sum over all channels of the study [nat]. `facts`: the effects by which samples are known to be spoilt.
 [[nodiscard]] double log_likelihood(const investigate::Baseline& model, const SimulatedStudy& data,
                                     const std::vector<Hidden>& facts);
