@@ -7,11 +7,11 @@
 namespace driftlab::investigate {
 namespace {
 
-/// `kStates`: how many there are where they are few, else 0.
-template <std::size_t kStates>
+/// `States`: how many there are where they are few, else 0.
+template <std::size_t States>
 void whiten_block(std::size_t states, std::size_t width, const double* __restrict in, const double* __restrict phi,
                   const double* __restrict gain, double inv_sd, double* __restrict state, double* __restrict out) {
-  const std::size_t m = kStates > 0 ? kStates : states;
+  const std::size_t m = States > 0 ? States : states;
   for (std::size_t c = 0; c < width; ++c) {
     double v = in[c];
     for (std::size_t i = 0; i < m; ++i) {
@@ -61,9 +61,9 @@ void WhiteningWalk::next(double filled) {
   }
 }
 
-template <std::size_t kStates>
+template <std::size_t States>
 void WhiteningWalk::advance(double filled) {
-  const std::size_t m = kStates > 0 ? kStates : gain_.size();
+  const std::size_t m = States > 0 ? States : gain_.size();
   const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance_[i * m + j]; };
   std::fill(sum_.begin(), sum_.end(), 0.0);
   double s = 0.0;

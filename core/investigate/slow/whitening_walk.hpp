@@ -49,8 +49,8 @@ class WhiteningWalk {
   [[nodiscard]] double inv_sd() const { return inv_sd_; }                  ///< 1/sqrt(S); 0 for an empty block
 
  private:
-  /// `kStates`: how many there are where they are few, else 0.
-  template <std::size_t kStates>
+  /// `States`: how many there are where they are few, else 0.
+  template <std::size_t States>
   void advance(double filled);
 
   const BlockStates& states_;

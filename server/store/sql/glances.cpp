@@ -119,8 +119,8 @@ Result<int> keep_glances(Connection& connection, const GlanceOf& glance_of) {
     if (!axis) {
       return fail(axis.error());
     }
-    if (*axis && std::ranges::find(axes, **axis) == axes.end()) {
-      axes.push_back(**axis);
+    if (const std::optional<SensorAxis>& one = *axis; one && std::ranges::find(axes, *one) == axes.end()) {
+      axes.push_back(*one);
     }
   }
   const Status shown = show_results(connection, axes);

@@ -67,7 +67,8 @@ class StudyRoutes(Routes):
     @operation("getModelImpliedCurves")
     def model_implied(self, id: str, recording: str, channel: str) -> GetModelImpliedCurvesAnswer:
         """What a simulation model implies at the averaging times of a characterised channel, and what was measured over it."""
-        return cast(GetModelImpliedCurvesAnswer, self._get("getModelImpliedCurves", {"id": id}, {"recording": recording, "channel": channel}))
+        answer = self._get("getModelImpliedCurves", {"id": id}, {"recording": recording, "channel": channel})
+        return cast(GetModelImpliedCurvesAnswer, answer)
 
     @operation("deleteModel")
     def delete_model(self, id: str, *, if_match: str | None = None) -> None:
