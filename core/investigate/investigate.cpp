@@ -295,7 +295,7 @@ std::vector<Searched> search_all(const Study& study, const std::vector<ChannelGr
           one.outcome =
               search_group(study, groups[g], g, control.reporting([&, g](std::string_view stage, double fraction) {
                 const std::scoped_lock lock(told);
-                done[g] = fraction;
+                done[g] = std::max(done[g], fraction);  // a search that begins anew tells of its beginning again
                 control.report(
                     stage, 0.95 * std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(groups.size()));
               }));
