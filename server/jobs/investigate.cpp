@@ -172,8 +172,9 @@ class Investigate final : public JobKind {
                 {"algorithm_version", kInvestigationVersion}};
   }
 
-  /// The innovations of every channel, and beside them one channel at a time. Where a gyroscope may see vibration, up
-  /// to a million samples of it are looked at one by one (core/investigate/search/slow_search.cpp).
+  /// The innovations of every channel, and beside them one channel at a time, in small studies three. Where a gyroscope
+  /// may see vibration, up to a million samples of it are looked at one by one
+  /// (core/investigate/search/slow_search.cpp).
   [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
     constexpr std::int64_t kBytesKept = 9;
     constexpr std::int64_t kBytesSearched = 80;
