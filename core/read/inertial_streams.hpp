@@ -11,8 +11,9 @@
 /// `imu3_...`, in the order of the file: the recording whose `stream` is `imu2` is that of the second unit
 /// (core/signal/column_streams.hpp). Their times count from their own first sample. They have as many rows as the
 /// chosen stream: behind a shorter one its sensors have ended while its time goes on at its mean step, and of a longer
-/// one the rest is left out, with a note; one that is more than 20 times slower is not in the table. Fixes and odometers of the same journey stand behind them
-/// (core/read/beside_streams.hpp); a file that holds only those becomes a table of them.
+/// one the rest is left out, with a note; one that is more than 20 times slower is not in the table. Fixes and
+/// odometers of the same journey stand behind them (core/read/beside_streams.hpp); a file that holds only those becomes
+/// a table of them.
 ///
 /// The rule is applied at the end of the file or when 16 MiB of samples are waiting, whichever is first: from there on
 /// the streams pass through, and those that begin later are counted. Memory: those 16 MiB, and as much for rows of

@@ -64,8 +64,8 @@ using ColumnNames = std::vector<std::string>;
 /// names must exist, no two columns may have the same (quantity, axis), and each role must check. Without, and for the
 /// other columns where `spec.columns` names the time alone: names such
 /// as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood; other columns become
-/// unspecified channels in unit `1`, and those of other streams have no role. Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names
-/// the column.
+/// unspecified channels in unit `1`, and those of other streams have no role. Errors: UnknownColumn, DuplicateColumn,
+/// UnitMismatch, InvalidArgument; each names the column.
 [[nodiscard]] Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec,
                                                                           const ColumnNames& names);
 

@@ -7,7 +7,7 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kLags = 8;      ///< chosen, not measured, as the next
+constexpr std::size_t kLags = 8;           ///< chosen, not measured, as the next
 constexpr std::size_t kFewestMeans = 200;  ///< means, so that their kurtosis has a known law in its tail
 
 double size_of(double score) { return (score * score - 1.0) / std::numbers::sqrt2; }
