@@ -96,8 +96,15 @@ Result<Json> channel_document(const Json& channel, const std::vector<Fit>& fits)
               {"result", channel}};
 }
 
-Result<Response> get_characterisation(ApiContext& context, const Request& request) {
-  auto recording = context.store.recording(request.parameters[0]);
+/// The newest result of a recording, and its fits.
+struct NewestCharacterisation {
+  Recording recording;
+  std::vector<Fit> fits;
+  Characterised found;
+};
+
+Result<NewestCharacterisation> newest_characterisation(ApiContext& context, const std::string& recording_id) {
+  auto recording = context.store.recording(recording_id);
   if (!recording) {
     return fail(recording.error());
   }
@@ -112,33 +119,42 @@ Result<Response> get_characterisation(ApiContext& context, const Request& reques
   if (!found) {
     return fail(found.error());
   }
+  return NewestCharacterisation{std::move(*recording), std::move(*fits), std::move(*found)};
+}
+
+Result<Response> get_characterisation(ApiContext& context, const Request& request) {
+  const auto newest = newest_characterisation(context, request.parameters[0]);
+  if (!newest) {
+    return fail(newest.error());
+  }
+  const auto& [recording, fits, found] = *newest;
   const auto wanted = request.parameter("channel");
   Json channels = Json::array();
-  for (const Json& channel : found->recording.at("channels")) {
+  for (const Json& channel : found.recording.at("channels")) {
     if (wanted && channel.at("channel") != std::string(*wanted)) {
       continue;
     }
-    auto document = channel_document(channel, *fits);
+    auto document = channel_document(channel, fits);
     if (!document) {
       return fail(document.error());
     }
     channels.push_back(std::move(*document));
   }
   if (channels.empty()) {
-    return fail(no_channel(recording->id, std::string(wanted.value_or(""))));
+    return fail(no_channel(recording.id, std::string(wanted.value_or(""))));
   }
-  const Json asked = stored(found->job.request_json);
-  const std::int64_t revision = fits->front().recording_revision;
-  Json document{{"recording", recording->id},
+  const Json asked = stored(found.job.request_json);
+  const std::int64_t revision = fits.front().recording_revision;
+  Json document{{"recording", recording.id},
                 {"revision", revision},
-                {"stale", revision != recording->revision},
-                {"job", found->job.id},
-                {"created_at", rfc3339(fits->front().created_at)},
+                {"stale", revision != recording.revision},
+                {"job", found.job.id},
+                {"created_at", rfc3339(fits.front().created_at)},
                 {"algorithm_version", asked.at("algorithm_version")},
                 {"parameters", asked.at("parameters")},
-                {"condition", found->recording.at("condition")},
-                {"duration_s", found->recording.at("duration_s")},
-                {"rate_hz", found->recording.at("rate_hz")}};
+                {"condition", found.recording.at("condition")},
+                {"duration_s", found.recording.at("duration_s")},
+                {"rate_hz", found.recording.at("rate_hz")}};
   document["channels"] = std::move(channels);
   return json_response(200, document);
 }
@@ -174,27 +190,16 @@ Result<Response> get_implied(ApiContext& context, const Request& request) {
 
 /// The part of the newest result of `recording_id` that is about that channel.
 Result<StoredChannel> newest_channel(ApiContext& context, const std::string& recording_id, const std::string& name) {
-  auto recording = context.store.recording(recording_id);
-  if (!recording) {
-    return fail(recording.error());
+  const auto newest = newest_characterisation(context, recording_id);
+  if (!newest) {
+    return fail(newest.error());
   }
-  auto fits = newest_fits(context.store, recording->id);
-  if (!fits) {
-    return fail(fits.error());
-  }
-  if (fits->empty()) {
-    return fail(not_characterised(recording->id));
-  }
-  auto found = result_of(context, fits->front().job_id, recording->id);
-  if (!found) {
-    return fail(found.error());
-  }
-  for (const Json& channel : found->recording.at("channels")) {
+  for (const Json& channel : newest->found.recording.at("channels")) {
     if (channel.at("channel") == name) {
       return stored_channel_from_json(channel);
     }
   }
-  return fail(no_channel(recording->id, name));
+  return fail(no_channel(newest->recording.id, name));
 }
 
 Result<Response> get_implied_by_model(ApiContext& context, const Request& request) {

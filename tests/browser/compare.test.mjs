@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
-import {Daemon, accessibilityFaults, launch, noise, open} from './world.mjs';
+import {Daemon, accessibilityFaults, characterised, closed, launch, noise, open} from './world.mjs';
 
 let browser;
 let daemon;
@@ -10,14 +10,7 @@ before(async () => { browser = await launch(); daemon = await Daemon.start(); })
 after(async () => { await browser?.close(); await daemon?.end(); });
 
 const RATE = 100;
-const closed = async page => { assert.deepEqual(page.loud, []); await page.context().close(); };
-const text = values => `gz [deg/s]\n${values.map(x => x.toFixed(6)).join('\n')}\n`;
-
-async function recorded(values, about) {
-  const made = await daemon.upload(text(values), {condition: 'static', rate_hz: RATE, columns: 'gz [deg/s]=angular_rate:z:deg/s', ...about});
-  assert.equal((await daemon.characterise(made.id)).state, 'succeeded');
-  return made.id;
-}
+const recorded = (values, about) => characterised(daemon, values, about);
 
 // The first table of a page's CSV: names of columns and the first row.
 async function csvOf(page) {

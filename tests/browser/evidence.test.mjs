@@ -2,23 +2,15 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
-import {Daemon, launch, noise, open} from './world.mjs';
+import {Daemon, characterised, closed, launch, noise, open} from './world.mjs';
 
 let browser;
 let daemon;
 before(async () => { browser = await launch(); daemon = await Daemon.start(); });
 after(async () => { await browser?.close(); await daemon?.end(); });
 
-const RATE = 100;
-const closed = async page => { assert.deepEqual(page.loud, []); await page.context().close(); };
 const panel = (page, title) => page.locator('section.panel', {has: page.getByRole('heading', {name: title})});
-const text = values => `gz [deg/s]\n${values.map(x => x.toFixed(6)).join('\n')}\n`;
-
-async function recorded(values, about) {
-  const made = await daemon.upload(text(values), {condition: 'static', rate_hz: RATE, columns: 'gz [deg/s]=angular_rate:z:deg/s', ...about});
-  assert.equal((await daemon.characterise(made.id)).state, 'succeeded');
-  return made.id;
-}
+const recorded = (values, about) => characterised(daemon, values, about);
 
 test('gross errors and jumps are marked in the trace, and lead to their samples', async () => {
   const values = noise(12000, 61);

@@ -1,4 +1,5 @@
 // A daemon on a directory of its own, Debian's Chromium before it, and what every page must keep to.
+import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -105,6 +106,20 @@ export async function open(browser, daemon, path, {absent = [], ...options} = {}
   });
   await page.goto(daemon.address + path);
   return page;
+}
+
+// Nothing was loud, and the tab goes.
+export async function closed(page) {
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+}
+
+// A characterised recording of a gyroscope z at 100 Hz [deg/s]: its id.
+export async function characterised(daemon, values, about) {
+  const text = `gz [deg/s]\n${values.map(x => x.toFixed(6)).join('\n')}\n`;
+  const made = await daemon.upload(text, {condition: 'static', rate_hz: 100, columns: 'gz [deg/s]=angular_rate:z:deg/s', ...about});
+  assert.equal((await daemon.characterise(made.id)).state, 'succeeded');
+  return made.id;
 }
 
 // What axe finds against WCAG 2.2 AA, as lines.
