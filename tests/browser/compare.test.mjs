@@ -50,7 +50,7 @@ test('conditions and fits are compared as recordings are, and nothing has the na
   const {fit_ids: fits, result} = (await daemon.json(`/v1/recordings/${ids[1]}/characterisation`)).channels[0];
   await page.getByLabel('Curve of static (2)').selectOption(fits[1]);
   await page.waitForURL(url => url.searchParams.get('with') === `${ids[0]},${fits[1]}`);
-  await chips.filter({hasText: `static z`}).filter({hasText: result.fits[1].model}).waitFor();
+  await chips.locator('bdi').filter({hasText: 'static z'}).filter({hasText: result.fits[1].model}).waitFor();
   const implied = (await daemon.json(`/v1/fits/${fits[1]}/implied`)).implied;
   const [heading, row] = await csvOf(page);
   const at = heading.findIndex(name => name.includes(result.fits[1].model) && !name.includes('÷'));
