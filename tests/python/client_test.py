@@ -256,7 +256,8 @@ class Everything(ClientTest):
         self.assertGreater(client.device_summary("all-07")["recordings"], 0)
         with contextlib.suppress(NotFound):  # a fit may leave a parameter open
             self.assertIn("allan", client.implied(next(client.fits(best=True))["id"])["implied"])
-        model = client.create_model({"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1.0, "unit": "deg/sqrt(h)"}}}]})
+        model = client.create_model(
+            {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1.0, "unit": "deg/sqrt(h)"}}}]})
         self.assertEqual(client.model_implied(model["id"], first, client.recording(first)["file"]["columns"][0])["left_out"], [])
         self.assertTrue(client.sample(seed=2).startswith("gz"))
         self.assertEqual(client.preview(client.sample(seed=2).encode())["format"], "csv")
