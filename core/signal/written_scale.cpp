@@ -146,8 +146,9 @@ std::string with_plus(std::string_view text) {
   std::string result(text);
   for (std::size_t at = result.size(); at-- > 1;) {
     const char next = at + 1 < result.size() ? result[at + 1] : '\0';
-    const char before = result[at - 1];
-    const bool after_operator = std::string_view("/*+- ").find(before) != std::string_view::npos;
+    const std::string_view before = trimmed(std::string_view(result).substr(0, at));
+    const bool after_operator =
+        !before.empty() && std::string_view("/*+-").find(before.back()) != std::string_view::npos;
     if (result[at] == ' ' && next >= '0' && next <= '9' && !after_operator) {
       result[at] = '+';
       break;

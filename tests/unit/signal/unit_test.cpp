@@ -80,6 +80,9 @@ TEST(Unit, TakesAScaleAndAnOffsetInTheFormsOfDataSheets) {
     EXPECT_EQ(again->to_si(-3000.0), unit->to_si(-3000.0)) << symbol;
   }
   EXPECT_EQ(parse_unit("degC/340 36.53")->symbol, "degC/340+36.53");
+  const auto spaced = parse_unit("degC -\t 4");
+  ASSERT_TRUE(spaced);
+  EXPECT_EQ(parse_unit(spaced->symbol)->to_si(1.0), spaced->to_si(1.0)) << "no sign is put behind a sign";
   EXPECT_DOUBLE_EQ(parse_unit("degC*0.5-10")->to_si(4.0), 273.15 - 8.0);
   EXPECT_DOUBLE_EQ(parse_unit("degC/2")->to_si(4.0), 275.15);
   EXPECT_DOUBLE_EQ(parse_unit("raw*0.5 g")->to_si(4.0), 2.0 * 9.80665);
