@@ -2,6 +2,8 @@
 /// results of the axis, so that a page of the list reads the marked rows alone, whatever else is stored.
 #include "server/store/sql/tables.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <functional>
 
@@ -19,9 +21,9 @@ constexpr std::string_view kMark =
     "AND later.sequence > r.sequence) ORDER BY CASE WHEN r.condition = 'static' THEN r.glance_level ELSE -1 END DESC, "
     "r.sequence LIMIT 1)";
 constexpr std::string_view kUnseen =
-    "SELECT id, document_json FROM channel_results WHERE glance_json = '' ORDER BY sequence LIMIT ?";
+    "SELECT id, document_json, device_id, quantity, axis FROM channel_results WHERE glance_json = '' ORDER BY sequence "
+    "LIMIT ?";
 constexpr std::string_view kSee = "UPDATE channel_results SET glance_json = ?2, glance_level = ?3 WHERE id = ?1";
-constexpr std::string_view kAxisOf = "SELECT device_id, quantity, axis FROM channel_results WHERE id = ?";
 
 /// Each reads, of the devices that it ends with, all at once.
 constexpr std::string_view kConditions = "SELECT device_id, condition, count(*) FROM recordings WHERE device_id IN (";
@@ -42,7 +44,14 @@ constexpr std::string_view kEndOfNewest = "))";
 constexpr std::string_view kThese = "SELECT id FROM devices WHERE id IN (SELECT value FROM json_each(?))";
 constexpr std::string_view kAmongVisible = " AND name IN (SELECT value FROM json_each(?))";
 
-SensorAxis read_axis(const Statement& row) { return {row.text(0), row.text(1), row.text(2)}; }
+/// A result that says nothing at a glance yet.
+struct Unseen {
+  std::string id;
+  std::string document_json;
+  SensorAxis axis;
+};
+
+Unseen read_unseen(const Statement& row) { return {row.text(0), row.text(1), {row.text(2), row.text(3), row.text(4)}}; }
 
 /// The devices that are asked for, as a query of their ids.
 struct Devices {
@@ -51,11 +60,7 @@ struct Devices {
 };
 
 Devices devices_of(const std::vector<std::string>& ids, const std::optional<Visibility>& visible) {
-  std::string list;
-  for (const std::string& id : ids) {
-    list.append(list.empty() ? "[\"" : ",\"").append(id).append("\"");  // ids are letters, digits and underscores
-  }
-  Devices devices{std::string(kThese), {list.empty() ? "[]" : list + "]"}};
+  Devices devices{std::string(kThese), {nlohmann::json(ids).dump()}};
   if (visible) {
     devices.select += kAmongVisible;
     devices.values.push_back(visible->devices_json);
@@ -93,38 +98,27 @@ Status show_results(Connection& connection, const std::vector<SensorAxis>& axes)
 }
 
 Result<int> keep_glances(Connection& connection, const GlanceOf& glance_of) {
-  std::vector<std::pair<std::string, Glance>> found;
+  Result<std::vector<Unseen>> found = std::vector<Unseen>();
   {
     Statement unseen = connection.prepare(kUnseen);
     unseen.bind(kGlancesAtOnce);
-    while (true) {
-      const Result<bool> row = unseen.step();
-      if (!row) {
-        return fail(row.error());
-      }
-      if (!*row) {
-        break;
-      }
-      found.emplace_back(unseen.text(0), glance_of(unseen.text(1)));
-    }
+    found = all_rows(unseen, read_unseen);
+  }
+  if (!found) {
+    return fail(found.error());
   }
   std::vector<SensorAxis> axes;
-  for (const auto& [id, glance] : found) {
-    if (Status kept = connection.prepare(kSee).bind(id, glance.json, glance.level).run(); !kept) {
+  for (const Unseen& one : *found) {
+    const Glance glance = glance_of(one.document_json);
+    if (Status kept = connection.prepare(kSee).bind(one.id, glance.json, glance.level).run(); !kept) {
       return fail(kept.error());
     }
-    Statement statement = connection.prepare(kAxisOf);
-    statement.bind(id);
-    const auto axis = first_row(statement, read_axis);
-    if (!axis) {
-      return fail(axis.error());
-    }
-    if (const std::optional<SensorAxis>& one = *axis; one && std::ranges::find(axes, *one) == axes.end()) {
-      axes.push_back(*one);
+    if (std::ranges::find(axes, one.axis) == axes.end()) {
+      axes.push_back(one.axis);
     }
   }
   const Status shown = show_results(connection, axes);
-  return shown ? Result<int>(static_cast<int>(found.size())) : fail(shown.error());
+  return shown ? Result<int>(static_cast<int>(found->size())) : fail(shown.error());
 }
 
 Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std::string>& device_ids,
