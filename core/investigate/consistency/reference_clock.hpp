@@ -32,7 +32,7 @@ struct ClockFault {
 inline constexpr double kClockBreaks = 60.0;
 
 /// The statistic from which a break is not ruled out where something else of the clock is found. Of 200 simulated
-/// studies of three recordings with a clock that drifts all the time 2 % reach it (median 6.8).
+/// studies of three recordings with a clock that drifts all the time 2 % reach it (tests/hidden/clock_break_test.cpp).
 inline constexpr double kClockMayBreak = 16.0;
 
 /// The break of the clock of a recording; nothing where the statistic stays below `least`. O(samples).
