@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """How long lists take in a lab's store: what each filter and order costs for one page of 50.
 
-usage: lists.py [DEVICES [RECORDINGS]]     (default 1000 20000; DRIFTLABD is the daemon)
+usage: lists.py [DEVICES [RECORDINGS [RESULTS]]]     (default 1000 20000 1; DRIFTLABD is the daemon)
 
-Fills a store through the API, characterises one recording of each device, and asks for each list 21 times in turn. Before each turn a
+Fills a store through the API, characterises RESULTS recordings of each device, and asks for each list 21 times in turn. Before each turn a
 device is changed, so that no answer is one that was kept. Prints a table of the median
 and the slowest answer in ms, as bench/lists.md holds it.
 """
@@ -25,7 +25,7 @@ AT_ONCE = 4
 WANTED_MS = 50.0  # of a search (dashboard brief, need A3)
 
 
-def fill(daemon: Daemon, devices: int, recordings: int) -> None:
+def fill(daemon: Daemon, devices: int, recordings: int, results: int) -> None:
     base = samples.gyro_csv(256)
 
     def recorded(i: int) -> None:
@@ -35,7 +35,7 @@ def fill(daemon: Daemon, devices: int, recordings: int) -> None:
         answer = daemon.upload(content, device=f"unit-{i % devices:04d}", id=f"run {i:05d} bench", condition=condition, rate_hz=100,
                                columns=samples.GYRO_Z)
         assert answer.status == 201, answer.describe()
-        if i < devices:
+        if i < devices * results:
             assert daemon.characterise(answer.json["id"], models=["WN"]).status in (201, 202)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
@@ -76,10 +76,10 @@ def lists(devices: int, recordings: int) -> dict[str, Callable[[int], str]]:
 
 
 def main() -> None:
-    devices, recordings = (int(given) for given in (sys.argv[1:] + ["1000", "20000"][len(sys.argv) - 1:]))
+    devices, recordings, results = (int(given) for given in (sys.argv[1:] + ["1000", "20000", "1"][len(sys.argv) - 1:]))
     with Daemon() as daemon:
         began = time.monotonic()
-        fill(daemon, devices, recordings)
+        fill(daemon, devices, recordings, results)
         print(f"{devices} devices, {recordings} recordings stored in {time.monotonic() - began:.0f} s\n")
         print("| list | median ms | slowest ms | rows |\n|---|---|---|---|")
         asked = lists(devices, recordings)
