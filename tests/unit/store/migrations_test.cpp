@@ -144,22 +144,28 @@ std::string recording_with_result(const std::string& name) {
          name + "', 'job_1', 'dev_1', " + recording + "1, 'gz', 'angular_rate', 'z', 'static', '{}', '{}', 0)";
 }
 
+/// A store of before pooling with one device and as many recordings, each with a result of one job.
+void make_results_of_schema_4(const std::filesystem::path& directory, int recordings) {
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
+  ASSERT_TRUE(open_with(directory, then));
+  const auto old = SqliteConnection::open(directory / "driftlab.db", Access::ReadWrite);
+  ASSERT_TRUE((*old)->execute(
+      "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+      "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
+      "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
+      "INSERT INTO job_results VALUES ('job_1', '{}', 0)"));
+  for (int i = 1; i <= recordings; ++i) {
+    ASSERT_TRUE((*old)->execute(recording_with_result(std::to_string(i))));
+  }
+}
+
 TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   // Until schema 4 a characterise job pooled what it saw of its neighbours, so that figures depended on who ended
   // first.
   const TemporaryDirectory directory;
-  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
-  ASSERT_TRUE(open_with(directory.path(), then));
+  ASSERT_NO_FATAL_FAILURE(make_results_of_schema_4(directory.path(), 2));
   {
     const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
-    ASSERT_TRUE((*old)->execute(
-        "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
-        "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
-        "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
-        "INSERT INTO job_results VALUES ('job_1', '{}', 0)"));
-    for (const char* const n : {"1", "2"}) {
-      ASSERT_TRUE((*old)->execute(recording_with_result(n)));
-    }
     ASSERT_TRUE((*old)->execute(
         "INSERT INTO pooled_results VALUES ('dev_1', 'angular_rate', 'z', 'job_1', '{\"of\":\"one of two\"}', 0)"));
   }
@@ -175,18 +181,7 @@ TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
 
 TEST(Migrations, ResultsOfAnEarlierReleaseAreSeenAtAGlance) {
   const TemporaryDirectory directory;
-  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
-  ASSERT_TRUE(open_with(directory.path(), then));
-  {
-    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
-    ASSERT_TRUE((*old)->execute(
-        "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
-        "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
-        "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0)"));
-    for (int i = 0; i < 150; ++i) {
-      ASSERT_TRUE((*old)->execute(recording_with_result(std::to_string(i))));
-    }
-  }
+  ASSERT_NO_FATAL_FAILURE(make_results_of_schema_4(directory.path(), 150));
   const auto now = open_with(directory.path(), embedded_migrations());
   ASSERT_TRUE(now) << now.error().message;
   Store& store = **now;
