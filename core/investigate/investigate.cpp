@@ -265,11 +265,6 @@ Taken take_from(const ChannelGroup& group, GroupOutcome& outcome, const RunContr
   return taken;
 }
 
-/// Channels whose searches go on side by side, in studies of few rows: each takes its memory. Chosen: the axes of a
-/// sensor; server/jobs/investigate.cpp counts on both figures.
-constexpr std::size_t kSideBySide = 3;
-constexpr std::size_t kMostRowsSideBySide = 400'000;
-
 struct Searched {
   GroupOutcome outcome;
   Taken taken;

@@ -27,7 +27,14 @@
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
+#include <cstddef>
+
 namespace driftlab::investigate {
+
+/// Channels whose searches go on side by side, in studies of at most so many rows: each takes its memory. Chosen, not
+/// measured: the axes of a sensor.
+inline constexpr std::size_t kSideBySide = 3;
+inline constexpr std::size_t kMostRowsSideBySide = 400'000;
 
 struct InvestigateOptions {
   bool predict_outages = true;  ///< half a second more

@@ -180,7 +180,6 @@ class Investigate final : public JobKind {
     constexpr std::int64_t kBytesSearched = 80;
     constexpr std::int64_t kBytesVibrating = 480;
     constexpr std::int64_t kMostVibrating = std::int64_t{1} << 20;
-    constexpr std::int64_t kMostSideBySide = 400'000;  // rows of studies in which three axes are searched side by side
     constexpr double kSecondsPerSample = 1e-5;
     JobCost cost;
     std::int64_t rows = 0;
@@ -192,7 +191,10 @@ class Investigate final : public JobKind {
       cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
     cost.memory_bytes += kBytesVibrating * std::min(beside_others, kMostVibrating);
-    cost.memory_bytes += rows <= kMostSideBySide ? 2 * (kBytesSearched + kBytesVibrating) * beside_others : 0;
+    if (rows <= std::int64_t{investigate::kMostRowsSideBySide}) {
+      constexpr std::int64_t kOthers = investigate::kSideBySide - 1;
+      cost.memory_bytes += kOthers * (kBytesSearched + kBytesVibrating) * beside_others;
+    }
     return cost;
   }
 
