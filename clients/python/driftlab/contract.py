@@ -1499,6 +1499,9 @@ class InvestigationFigures(TypedDict):
     spectrum: InvestigationFiguresSpectrum
     # Means over stretches of time of one recording; `effect` is what the extended model puts into the mean.
     course: InvestigationFiguresCourse
+    # The innovations of the recording whose noise changes most, where noise still changes beside the findings: density
+    # over that of white noise, by time and frequency.
+    spectrogram: NotRequired[InvestigationFiguresSpectrogram]
 
 
 class InvestigationFiguresAllan(TypedDict):
@@ -1525,6 +1528,19 @@ class InvestigationFiguresInnovation(TypedDict):
     after: float | None
     q025: float | None
     q975: float | None
+
+
+class InvestigationFiguresSpectrogram(TypedDict):
+    """The innovations of the recording whose noise changes most, where noise still changes beside the findings: density
+    over that of white noise, by time and frequency."""
+
+    recording: str
+    # Middle of each cell from the first sample of the file.
+    time_s: list[float | None]
+    # Mean frequency of each band, rising.
+    f_hz: list[float | None]
+    # One row per time, one number per band: 0 as expected, 1 ten times as much.
+    log10_ratio: list[list[float | None]]
 
 
 class InvestigationFiguresSpectrum(TypedDict):

@@ -70,6 +70,15 @@ struct InnovationRatio {
   double low = 0.0, high = 0.0;  ///< where 95 % of right models lie
 };
 
+/// The density of innovations over that of white ones, by time and frequency (core/investigate/report/
+/// innovation_spectrogram.hpp).
+struct InnovationSpectrogram {
+  std::string recording;
+  std::vector<double> time_s;       ///< from the first sample of the file
+  std::vector<double> f_hz;         ///< rising
+  std::vector<double> log10_ratio;  ///< cells x bands, cell by cell; NaN: no sample there
+};
+
 /// What the figures of a channel show (core/investigate/report/figures.hpp).
 struct ChannelFigures {
   std::string channel;
@@ -80,7 +89,8 @@ struct ChannelFigures {
   std::vector<InnovationRatio> ratios;
   std::vector<double> f_hz, density_before, density_after, highest_before, highest_after, chance;  ///< [SI^2/Hz]
   Band density_baseline;
-  std::vector<double> time_s, error, effect;  ///< [SI]; effect: what was taken off
+  std::vector<double> time_s, error, effect;         ///< [SI]; effect: what was taken off
+  std::optional<InnovationSpectrogram> spectrogram;  ///< where noise still changes in time or frequency
 };
 
 /// Allan deviation of a channel at one averaging time [SI].
