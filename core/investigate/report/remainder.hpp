@@ -19,6 +19,7 @@ struct Remainder {
   double p_study = 1.0;
   bool in_time_or_frequency = false;  ///< bursts, lines and changes: what a named cause should have taken away
   bool of_power_alone = false;        ///< a mean, however it moves, does not show in it
+  double period_s = 0.0;              ///< of power that swells and fades; 0: it does not
   bool follows_changes = false;       ///< noise that changes in time shows in it too: told where nothing changes
   std::string sentence;               ///< where it is, in words
 };

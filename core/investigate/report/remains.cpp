@@ -225,9 +225,10 @@ Remainder line_in_variance(const std::vector<double>& score, const std::vector<u
   for (std::size_t k = kFirst; k + 1 < z.size() && variance > 0.0; ++k) {
     const double surprise = std::norm(z[k]) / static_cast<double>(n) / variance;
     if (surprise > best.observed) {
+      const double f_hz = static_cast<double>(k) / (static_cast<double>(n) * dt_s);
       best.observed = surprise;
-      best.sentence = name + ": the noise swells and fades at " +
-                      three_digits(static_cast<double>(k) / (static_cast<double>(n) * dt_s)) + " Hz";
+      best.period_s = 1.0 / f_hz;
+      best.sentence = name + ": the noise swells and fades at " + three_digits(f_hz) + " Hz";
     }
   }
   return best;

@@ -33,6 +33,7 @@ struct Check {
   bool failed = false;          ///< p_adjusted is below 0.05
   double excess = 0.0;          ///< log likelihood that the misfit it shows is worth [nat], 0 for checks of causes
   bool of_slow_misfit = false;  ///< what mean effects and slow noise explain
+  bool of_spectrum = false;     ///< how power lies over frequencies or scales, all of a recording together
   double scale_s = 0.0;         ///< of a wavelet variance; 0 for others
   double observed_after = 0.0;  ///< the same under the extended model
   double p_after = 1.0;
