@@ -19,9 +19,6 @@ namespace {
 /// measured.
 constexpr double kMostRecords = 20.0;
 
-/// Chosen well below the level of a check, for a doubt takes a finding back. Not measured.
-constexpr double kClear = 0.001;
-
 bool is_fact(const Cause& cause) { return cause.as<FileFact>() != nullptr || cause.as<RecordingFault>() != nullptr; }
 
 bool at_bound(const Evidence& evidence, const ChannelGroup& group) {

@@ -9,6 +9,9 @@ namespace driftlab::investigate {
 /// Departures with a p_study below this level are reported.
 inline constexpr double kShown = 0.003;
 
+/// Below this one a departure may take a finding back. Chosen well below the level of a check, not measured.
+inline constexpr double kClear = 0.001;
+
 /// One departure.
 struct Remainder {
   std::string id;  ///< of its check

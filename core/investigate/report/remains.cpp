@@ -4,6 +4,7 @@
 #include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/investigate/report/dependence.hpp"
+#include "core/investigate/report/uneven_codes.hpp"
 #include "core/process/distributions.hpp"
 #include "core/process/random.hpp"
 
@@ -347,6 +348,9 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     list.back().follows_changes = true;
   }
   keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
+  if (Remainder codes = uneven_codes(group, data); codes.observed > 0.0) {
+    keep(list, std::move(codes), nullptr, group, "codes", false);
+  }
   return list;
 }
 

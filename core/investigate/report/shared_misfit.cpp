@@ -10,9 +10,6 @@ namespace {
 /// In a recording: what comes so often leaves every part of it that lasts with the same power. Chosen, not measured.
 constexpr double kFewestPeriods = 20.0;
 
-/// A remainder, or a profile, that is clearly there. Chosen, not measured.
-constexpr double kClear = 0.001;
-
 }  // namespace
 
 SharedMisfit::SharedMisfit(const Evidence& evidence, const ChannelGroup& group, const std::vector<Remainder>& remains,
