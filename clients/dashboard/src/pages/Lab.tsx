@@ -7,6 +7,7 @@ import {writeTick, writeQuantity} from '../format/number';
 import {writeToday, writeWhen} from '../format/time';
 import {capital, conditionName, countWord, jobKind, plural, writeUnit} from '../format/words';
 import {MarkAt} from '../figure/MarkAt';
+import {decadeTicks, logarithmic} from '../figure/scale';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
@@ -44,10 +45,8 @@ interface Scale { (value: number): number; ticks: number[] }
 function levelScale(values: number[], width: number): Scale {
   const low = Math.min(...values) / 1.4;
   const high = Math.max(...values) * 1.4;
-  const x = (value: number): number => 10 + (width - 20) * Math.log(value / low) / Math.log(high / low);
-  const ticks: number[] = [];
-  for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const digit of [1, 2, 5]) { const value = Number(`${digit}e${e}`); if (value >= low && value <= high) ticks.push(value); }
-  return Object.assign(x, {ticks: ticks.length > 7 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
+  const ticks = decadeTicks(low, high, [1, 2, 5]);
+  return Object.assign(logarithmic(low, high, 10, width - 10), {ticks: ticks.length > 7 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
 }
 
 const WIDTH = 460;
