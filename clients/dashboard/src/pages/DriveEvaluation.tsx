@@ -12,6 +12,7 @@ import {Head} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {MadeBy, Report} from '../shell/Report';
 import {curlOf} from '../shell/copy';
+import {NextRows} from '../shell/Pager';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Side, type Simulated} from './drive/documents';
@@ -61,7 +62,7 @@ function Outages({of, path, id, curl}: {of: Duration; path: Measured['path']; id
     <Panel title={`Table of outages of ${of.duration_s} s`} controls={<Segments label="Order" options={[['start', 'By start'], ['worst', 'Worst first']] as const} value={worstFirst ? 'worst' : 'start'} onChange={value => choose({order: value === 'worst' ? 'worst' : null, from: null})} />}>
       <div class="scroll" tabIndex={0} role="region" aria-label="Outages one by one"><table><thead><tr><th scope="col" class="n">start, s</th><th scope="col">motion</th><th scope="col" class="n">error, m</th><th scope="col" class="n">along</th><th scope="col" class="n">across</th><th scope="col" class="n">NEES</th><th scope="col" class="n">straight line, m</th><th scope="col" class="n">phase</th></tr></thead>
         <tbody>{rows.slice(from, from + ROWS).map((each, i) => <tr key={i}><th scope="row" class="n">{writeTick(each.start_s)}</th><td class="sec">{each.motion}</td><td class="n"><b>{writeNumber(errorOf(each))}</b></td><td class="n">{writeNumber(each.along_m)}</td><td class="n">{writeNumber(each.across_m)}</td><td class="n">{writeNumber(each.nees)}</td><td class="n">{writeNumber(each.straight_line_error_m)}</td><td class="n">{each.phase}</td></tr>)}</tbody></table></div>
-      {(from > 0 || rows.length > from + ROWS) && <p class="row">{from > 0 && <button type="button" class="btn" onClick={() => choose({from: null})}>First</button>}{rows.length > from + ROWS && <button type="button" class="btn" onClick={() => choose({from: String(from + ROWS)})}>Next {ROWS}</button>}</p>}
+      <NextRows from={from} rows={ROWS} count={rows.length} />
     </Panel>
   </>;
 }

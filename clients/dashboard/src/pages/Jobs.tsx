@@ -7,6 +7,7 @@ import {writeClock, writeDuration, writeMoment} from '../format/time';
 import {capital, jobKind, plural} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -114,7 +115,7 @@ export default function Jobs(): JSX.Element {
         <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td class="n" /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
         </tbody>
       </table></div>}</Shown>
-      {(read.data?.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{read.data?.next_cursor && <button type="button" class="btn" onClick={() => choose({after: read.data!.next_cursor})}>Older</button>}</p>}
+      <Pager next={read.data?.next_cursor} />
     </Panel>
   </>;
 }

@@ -14,6 +14,7 @@ import {Head} from '../shell/Head';
 import {LastResult, pageOfResult} from '../shell/LastResult';
 import {Sought} from '../shell/Sought';
 import {curlOf, copy} from '../shell/copy';
+import {Pager} from '../shell/Pager';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 
@@ -104,7 +105,7 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
       {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18" preserveAspectRatio="xMinYMid meet">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
       </tbody>
     </table></div>
-    {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>First</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}
+    <Pager next={next} back="First" on={`Next ${PAGE}`} />
   </Panel>;
 }
 

@@ -20,6 +20,7 @@ import {openDrawer} from '../shell/Drawer';
 import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {LastResult} from '../shell/LastResult';
+import {NextRows, Pager} from '../shell/Pager';
 import {say} from '../shell/say';
 import {Sought} from '../shell/Sought';
 import {Hairlines, Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
@@ -29,5 +30,5 @@ import {useTitle} from '../shell/title';
 Object.freeze([Fragment, useEffect, useId, useLayoutEffect, useMemo, useRef, useState, jsx, get, remove, send, useJobEvents, useRead, useEvents, MarkAt, decadeTicks, linear, logarithmic, ticksBetween, finite,
   writeBytes, writeCount, writeNumber, writeP, writeQuantity, writeShare, writeTick, writeDuration, writeFull, writeToday, writeWhen,
   capital, conditionName, countWord, jobKind, listWords, plural, processName, sensorOf, spaced, symbolOf, writeSentence, writeUnit,
-  choose, go, hover, listOf, pageOf, usePlace, Characterise, copy, curlOf, Delete, openDrawer, Head, Verdict, usePageKeys, LastResult, say, Sought,
+  choose, go, hover, listOf, pageOf, usePlace, Characterise, copy, curlOf, Delete, openDrawer, Head, Verdict, usePageKeys, LastResult, NextRows, Pager, say, Sought,
   Hairlines, Panel, Progress, Refusal, Segments, Shown, useTitle, sourceOf, useSheets, writeStated, ConditionField]);
