@@ -102,6 +102,12 @@ Result<Response> get_counts(ApiContext& context, const Request& request) {
   return json_response(200, document);
 }
 
+/// How many jobs run at a time, which no row of the store says.
+Result<Response> get_workers(ApiContext& context) {
+  const auto workers = context.workers();
+  return workers ? Result<Response>(json_response(200, Json{{"workers", *workers}})) : fail(workers.error());
+}
+
 /// The newest result of a device: by the verdicts that are kept, or a characterisation of before all of them were.
 Json newest_result(const std::optional<ResultVerdict>& said, const std::optional<ChannelResult>& newest) {
   if (said && (!newest || said->created_at >= newest->created_at)) {
@@ -168,6 +174,7 @@ void add_overview_routes(Router& router, ApiContext& context) {
   router.add(from_rows({"GET", "/v1/counts", "getCounts", {"since", "include"}, Handler([&](const Request& r) {
                           return get_counts(context, r);
                         })}));
+  router.add({"GET", "/v1/workers", "getWorkers", {}, Handler([&](const Request&) { return get_workers(context); })});
   router.add(from_rows({"GET",
                         "/v1/attention",
                         "listAttention",

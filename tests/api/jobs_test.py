@@ -32,6 +32,9 @@ class JobTest(DaemonTest):
 
 
 class Life(JobTest):
+    def test_the_daemon_says_how_many_jobs_run_at_a_time(self) -> None:
+        self.assertEqual(self.expect(200, self.daemon.get("/v1/workers")).json, {"workers": 1})
+
     def test_upload_queues_nothing_and_a_job_runs_to_its_result(self) -> None:
         jobs = self.daemon.items("/v1/jobs")
         recording = self.recording(1)

@@ -217,6 +217,14 @@ test('what is found: recordings, conditions and beginnings of ids, on a narrow s
   await closed(page);
 });
 
+test('the page of jobs says how many run at a time', async () => {
+  const {workers} = await daemon.json('/v1/workers');
+  assert.ok(workers > 0);
+  const page = await open(browser, daemon, '/jobs');
+  await page.locator('.meta', {hasText: `${workers} worker${workers === 1 ? '' : 's'}`}).waitFor();
+  await closed(page);
+});
+
 test('addresses hold kind, label, parameter and finding', async () => {
   const page = await open(browser, daemon, '/jobs?kind=investigate');
   await page.getByRole('heading', {level: 1, name: 'Jobs'}).waitFor();

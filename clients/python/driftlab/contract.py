@@ -1368,6 +1368,11 @@ class GetSchemaAnswerCase(TypedDict):
     text: str
 
 
+class GetWorkersAnswer(TypedDict):
+    # Jobs that run at a time; more wait.
+    workers: int
+
+
 class HealthAnswer(TypedDict):
     status: Literal['alive']
     version: str
@@ -4346,6 +4351,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/schemas/{name}', (), (), ('application/schema+json', 'application/json')),
     'getCounts': Operation(
         'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
+    'getWorkers': Operation(
+        'GET', '/v1/workers', (), (), ('application/json',)),
     'listAttention': Operation(
         'GET', '/v1/attention', ('limit', 'cursor', 'sort', 'device', 'since'), (), ('application/json',)),
     'search': Operation(

@@ -89,12 +89,13 @@ export default function Jobs(): JSX.Element {
   const path = `/v1/jobs?sort=-created_at&limit=50${state === 'all' ? '' : `&state=${state}`}${kind && `&kind=${encodeURIComponent(kind)}`}${after ? `&cursor=${after}` : ''}`;
   const read = useRead<List<Job>>(path, 2000);
   const counts = useRead<Counts>(`/v1/counts?since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 2000);
+  const workers = useRead<{workers: number}>('/v1/workers', 30000);
   const jobs = read.data?.items ?? [];
   const running = jobs.filter(job => job.state === 'running');
   const from = Math.min(...jobs.map(job => Date.parse(job.created_at)));
   const to = Math.max(...jobs.map(job => job.finished_at ? Date.parse(job.finished_at) : Date.now()), from + 1000);
   return <>
-    <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued, ${counts.data.jobs.failed_since?.count ?? 0} failed today`, 'live']}
+    <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued, ${counts.data.jobs.failed_since?.count ?? 0} failed today`, workers.data && plural(workers.data.workers, 'worker'), 'live']}
       actions={<><label>kind <select value={kind} onChange={event => choose({kind: event.currentTarget.value || null, after: null})}><option value="">all</option>{KINDS.map(each => <option key={each} value={each}>{jobKind(each)}</option>)}</select></label><Segments label="State" options={[['all', 'All'], ['running', 'Running'], ['failed', 'Failed']] as const} value={state as 'all'} onChange={value => choose({state: value === 'all' ? null : value, after: null})} /></>} />
     <Tabs group="jobs" />
     {running.map(job => <Panel key={job.id} title={<a href={pageOf('jobs', job.id)}>{capital(jobKind(job.kind))}: {what(job)}</a>} sub={`${job.stage ?? 'starting'} · attempt ${job.attempt} · started ${job.started_at ? writeClock(job.started_at) : '–'}`}
