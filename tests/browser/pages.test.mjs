@@ -273,6 +273,20 @@ test('a device’s page leads to its comparison and exports its model as the com
   await page.context().close();
 });
 
+test('a device’s page says whether one structure serves its conditions, and by which candidates', async () => {
+  const {structure, model_note: note} = await daemon.json('/v1/parameter-tables?device=phone-07&sensor=gyroscope&axis=z');
+  assert.equal(structure.by_condition.length, 2, 'at rest and turning');
+  const page = await open(browser, daemon, paths.device);
+  const said = await page.locator('.verdict small').innerText();
+  for (const sentence of [structure.statement, note].filter(Boolean)) assert.ok(said.includes(sentence.slice(0, 40)), `${sentence} | ${said}`);
+  const panel = page.locator('section.panel', {has: page.getByRole('heading', {name: 'One structure or several'})});
+  for (const name of new Set([structure.common, structure.ranking[0].model, ...structure.by_condition.map(one => one.model)])) await panel.getByRole('rowheader', {name: new RegExp(`^${name.replaceAll('+', '\\+')}( serves all)?$`)}).waitFor();
+  assert.equal(await panel.getByText('serves all').count(), 1);
+  assert.equal(await panel.getByRole('cell', {name: 'best', exact: true}).count(), 1);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
 // What each report must say word by word. A sentence that sends the reader elsewhere has none of it.
 const MADE = {
   other: {algorithm: /algorithm version \d+/, seed: /seed \d+/, job: /job_[0-9A-Z]{26}/},

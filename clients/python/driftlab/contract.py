@@ -2854,8 +2854,7 @@ class ParameterTable(TypedDict):
     model: str | None
     # The condition of the row that the others are compared with, in its compact form.
     reference: str | None
-    # Whether one structure serves every condition; absent where that is not known of exactly these recordings.
-    structure: NotRequired[ParameterTableStructure]
+    structure: NotRequired[PooledSensorStructure]
     # How the model of the table and the structure of the statement are both right; null where they are one.
     model_note: str | None
     pooling: ParameterTablePooling
@@ -2952,15 +2951,6 @@ class ParameterTableSheetComparisonFigure(TypedDict):
     verdict: Literal['agrees', 'above', 'below', None]
 
 
-class ParameterTableStructure(TypedDict):
-    """Whether one structure serves every condition; absent where that is not known of exactly these recordings."""
-
-    verdict: Literal['one_structure', 'changes', 'undecided']
-    # The structure that the statement speaks of.
-    common: str
-    statement: str
-
-
 class ParameterTables(TypedDict):
     """The tables of every axis of a sensor that has results."""
 
@@ -3019,6 +3009,8 @@ class PooledSensorCondition(TypedDict):
 
 
 class PooledSensorStructure(TypedDict):
+    """Whether one structure serves every condition."""
+
     verdict: Literal['one_structure', 'changes', 'undecided']
     statement: str
     # The smallest structure that serves every condition, whole or in part.
@@ -3029,7 +3021,9 @@ class PooledSensorStructure(TypedDict):
     dof: NotRequired[float | None]
     # By how much its criterion exceeds the best in the condition that shows it best; above 6 the structure changes.
     excess: float | None
+    # By the criterion summed over the conditions, the best first; null where a condition lacks a fit.
     ranking: list[PooledSensorStructureRankingItem]
+    # The best of each condition.
     by_condition: list[PooledSensorStructureByConditionItem]
 
 

@@ -24,6 +24,7 @@ import {conditionKey} from './compare/items';
 import {colours, type ParameterTable, type Trends} from './device/documents';
 import {ExportModel} from './device/ExportModel';
 import {Recordings} from './device/Recordings';
+import {Structure} from './device/Structure';
 import {Parameters} from './device/Table';
 import {SheetLine} from './device/SheetLine';
 import {TrendFrame} from './device/TrendPanel';
@@ -107,7 +108,7 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
       <Shown read={read}>{table => <><Parameters table={table} />{table.data_sheet && <SheetLine comparison={table.data_sheet} />}</>}</Shown>
     </section>
     {read.data && <div class="grid two">
-      <Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} />
+      <div class="stack"><Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} /><Structure table={read.data} /></div>
       <Panel title={`Trends against ${against === 'rate' ? 'rate' : 'angular acceleration'}`} controls={<Segments label="Against" options={[['rate', '|rate|'], ['acceleration', '|acceleration|']] as const} value={against === 'rate' ? 'rate' : 'acceleration'} onChange={value => choose({trend: value === 'rate' ? null : value})} />}>
         {trends.problem ? <Refusal problem={trends.problem} again={trends.again} /> : !trends.data ? <Hairlines /> : shown.length === 0 ? <p class="sec">One condition shows no trend. Record this device while it turns at a known rate.</p>
           : <><div class="small-multiples">{shown.map(trend => <TrendFrame key={trend.parameter} trend={trend} device={device.name} colour={colour} />)}</div><p class="note">Zero is on every axis. “Moves” rejects equality at 5 %; “rises” or “falls” only where the trend itself does. … not identified.</p></>}
