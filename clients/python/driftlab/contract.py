@@ -4449,6 +4449,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/parameter-tables',
         ('device', 'sensor', 'axis', 'method', 'model', 'reference'),
         ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown', 'text/x-latex')),
+    'getStructure': Operation(
+        'GET', '/v1/structures', ('of',), (), ('application/json',)),
     'getTrends': Operation(
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),

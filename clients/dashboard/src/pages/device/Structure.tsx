@@ -16,7 +16,7 @@ export function Structure({table}: {table: ParameterTable}): JSX.Element | null 
   const [first] = structure.ranking;
   const shown = structure.ranking.filter(({model}) => model === first?.model || model === structure.common || best(model));
   const rest = structure.ranking.length - shown.length;
-  return <Panel title="One structure or several" sub={`${WORDS[structure.verdict]}${structure.p === null || structure.verdict === 'changes' ? '' : `, ${writeP(structure.p)}`}`}>
+  return <Panel title="One structure or several" sub={`${WORDS[structure.verdict]}${structure.p === null || !structure.dof || structure.verdict === 'changes' ? '' : `, ${writeP(structure.p)}`}`}>
     <table class="stacked"><thead><tr><th scope="col">structure</th><th scope="col">best under</th><th scope="col" class="n">criterion over all</th></tr></thead>
       <tbody>{shown.map(({model, criterion}) => <tr key={model}><th scope="row">{model}{model === structure.common && <span class="u"> serves all</span>}</th><td class="sec">{best(model) || 'no condition'}</td>
         <td class="n u" data-label="criterion over all">{model === first?.model ? 'best' : finite(criterion) && finite(first?.criterion) ? `+${writeNumber(criterion - first.criterion, 2)}` : '–'}</td></tr>)}</tbody></table>
