@@ -10,6 +10,7 @@ import {unitsFor} from '../format/units';
 import {capital, conditionName, plural, sensorOf, writeUnit} from '../format/words';
 import {defaultReadout, Figure} from '../figure/Figure';
 import {choose, go, hover, pageOf, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Characterise} from '../shell/Characterise';
 import {Delete} from '../shell/Delete';
 import {Head, Verdict} from '../shell/Head';
@@ -85,6 +86,7 @@ function How({result, channel}: {result: Characterisation; channel: Characterise
       {c.contamination && <><dt>gross errors</dt><dd>{c.contamination.verdict}, {writeP(c.contamination.p)}, {writeCount(c.contamination.flagged_samples)} samples flagged</dd></>}
     </dl>
     {c.warnings.map(warning => <p key={warning} class="note"><span class="g warn" aria-hidden="true">△ </span>{warning}</p>)}
+    <RunAgain job={result.job} />
   </>;
 }
 

@@ -13,6 +13,7 @@ import {capital, conditionName, countWord, jobKind, listWords, plural, processNa
 import {choose, go, hover, listOf, pageOf, usePlace} from '../route';
 import {sourceOf, useSheets, writeStated} from '../pages/datasheet/documents';
 import {ConditionField} from '../pages/upload/ConditionField';
+import {RunAgain} from '../shell/Again';
 import {Characterise} from '../shell/Characterise';
 import {copy, curlOf} from '../shell/copy';
 import {Delete} from '../shell/Delete';
@@ -30,5 +31,5 @@ import {useTitle} from '../shell/title';
 Object.freeze([Fragment, useEffect, useId, useLayoutEffect, useMemo, useRef, useState, jsx, get, remove, send, useJobEvents, useRead, useEvents, MarkAt, decadeTicks, linear, logarithmic, ticksBetween, finite,
   writeBytes, writeCount, writeNumber, writeP, writeQuantity, writeShare, writeTick, writeDuration, writeFull, writeToday, writeWhen,
   capital, conditionName, countWord, jobKind, listWords, plural, processName, sensorOf, spaced, symbolOf, writeSentence, writeUnit,
-  choose, go, hover, listOf, pageOf, usePlace, Characterise, copy, curlOf, Delete, openDrawer, Head, Verdict, usePageKeys, LastResult, NextRows, Pager, say, Sought,
+  choose, go, hover, listOf, pageOf, usePlace, Characterise, copy, curlOf, Delete, openDrawer, Head, RunAgain, Verdict, usePageKeys, LastResult, NextRows, Pager, say, Sought,
   Hairlines, Panel, Progress, Refusal, Segments, Shown, useTitle, sourceOf, useSheets, writeStated, ConditionField]);
