@@ -592,7 +592,7 @@ class DeviceSummaryCondition(TypedDict):
 class DeviceSummaryLatest(TypedDict):
     """The newest result that has a verdict; null where there is none."""
 
-    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress']
+    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress', 'drive_evaluation']
     # Of what the result is of: the recording, the investigation, the evaluation or the regression.
     id: str
     # Where the result is read.
