@@ -23,7 +23,7 @@ function wayOf({type, enum: choices, items}: Property): Way {
   return type === 'array' && (items?.type === 'string' || items?.enum) ? 'words' : 'json';
 }
 
-const typed = (value: unknown, way: Way): string => value === undefined || value === null ? '' : way === 'json' ? JSON.stringify(value, null, 1) : way === 'words' ? (value as string[]).join(', ') : String(value);
+const typed = (value: unknown, way: Way): string => value === undefined || value === null ? '' : way === 'json' ? JSON.stringify(value).replace(/([,:])(?=["\[{])/g, '$1 ') : way === 'words' ? (value as string[]).join(', ') : String(value);
 
 function meant(text: string, {enum: choices}: Property, way: Way): unknown {
   if (way === 'tick') return text === 'true';
@@ -46,12 +46,12 @@ function Field({name, property, value, onChange}: {name: string; property: Prope
   const common = {id: `set-${name}`, 'aria-describedby': about};
   const take = (event: JSX.TargetedEvent<HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement>): void => onChange(event.currentTarget.value);
   return <div class="setting"><label for={`set-${name}`}>{spaced(name)}</label>
-    {way === 'choice' ? <select {...common} value={value} onChange={take}>{property.enum!.map(each => <option key={each}>{each}</option>)}</select>
+    {way === 'choice' ? <select {...common} value={value} onChange={take}>{property.enum!.map(each => <option key={each} value={each}>{typeof each === 'string' ? spaced(each) : each}</option>)}</select>
       : way === 'tick' ? <input type="checkbox" {...common} checked={value === 'true'} onChange={event => onChange(String(event.currentTarget.checked))} />
       : way === 'number' ? <input type="number" step="any" min={property.minimum} max={property.maximum} {...common} value={value} onInput={take} />
       : way === 'words' ? <input type="text" {...common} value={value} onInput={take} />
-      : <textarea rows={Math.min(8, Math.max(2, value.split('\n').length))} {...common} value={value} onInput={take} />}
-    {about && <span class="u" id={about}>{property.description}</span>}</div>;
+      : <textarea rows={Math.min(6, 1 + Math.ceil(value.length / 40))} {...common} value={value} onInput={take} />}
+    {about && <span class="u" id={about}>{property.description!.replace(/`/g, '')}</span>}</div>;
 }
 
 function Form({job, contract}: {job: Job; contract: Contract}): JSX.Element {
