@@ -1,6 +1,6 @@
 #pragma once
 /// A comparison of structures by names, from fits as they are reported: of the conditions of a sensor axis
-/// (pooled_sensor.hpp), or of recordings that somebody puts beside each other.
+/// (pooled_sensor.hpp), or of recordings that somebody puts beside each other (core/analysis/compare_structures.hpp).
 #include "core/campaign/pooled_sensor.hpp"
 #include "core/campaign/reported_channel.hpp"
 #include "core/campaign/structure.hpp"
@@ -19,15 +19,5 @@ namespace driftlab {
 /// `labels`: of the rows, in the order of the scores.
 [[nodiscard]] PooledStructure told_structure(const StructureChoice& choice, const std::vector<std::string>& models,
                                              const std::vector<std::string>& labels);
-
-/// One recording's channel with its fits.
-struct FittedRow {
-  std::string label;
-  std::vector<ReportedFit> fits;
-};
-
-/// Whether one structure serves all rows, of which there is at least one, by the candidates that all of them were
-/// fitted with. The sentence speaks of recordings.
-[[nodiscard]] PooledStructure compare_structures(const std::vector<FittedRow>& rows);
 
 }  // namespace driftlab

@@ -1,5 +1,5 @@
 // Whether recordings that somebody puts beside each other have one structure.
-#include "core/campaign/told_structure.hpp"
+#include "core/analysis/compare_structures.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/reported_channel.hpp"
 #include "server/api/api.hpp"

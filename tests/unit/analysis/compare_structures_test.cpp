@@ -1,4 +1,4 @@
-#include "core/campaign/told_structure.hpp"
+#include "core/analysis/compare_structures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ ReportedFit fit(const std::string& model, double criterion, double statistic = 1
   return made;
 }
 
-TEST(ToldStructure, RecordingsThatCannotBeToldApartHaveOneStructure) {
+TEST(CompareStructures, RecordingsThatCannotBeToldApartHaveOneStructure) {
   // Ranked first are two models, of which the one is as good as the other in both recordings.
   const PooledStructure told = compare_structures(
       {{"a", {fit("WN+GM", 0.0), fit("WN+RW", 1.0)}}, {"b", {fit("WN+RW", 0.0), fit("WN+GM", 1.0)}}});
@@ -25,7 +25,7 @@ TEST(ToldStructure, RecordingsThatCannotBeToldApartHaveOneStructure) {
   EXPECT_EQ(told.by_condition[1].model, "WN+RW");
 }
 
-TEST(ToldStructure, ComponentsThatNoRecordingShowsTogetherAreADifference) {
+TEST(CompareStructures, ComponentsThatNoRecordingShowsTogetherAreADifference) {
   const auto row = [](const std::string& label, double gauss_markov, double drift, double both) {
     return FittedRow{label, {fit("WN+GM", gauss_markov), fit("WN+DR", drift), fit("WN+GM+DR", both)}};
   };
@@ -37,7 +37,7 @@ TEST(ToldStructure, ComponentsThatNoRecordingShowsTogetherAreADifference) {
       "worse by 12.0 or more).");
 }
 
-TEST(ToldStructure, OnlyWhatEachWasFittedWithIsCompared) {
+TEST(CompareStructures, OnlyWhatEachWasFittedWithIsCompared) {
   const PooledStructure told =
       compare_structures({{"a", {fit("WN", 0.0), fit("WN+GM", -50.0)}}, {"b", {fit("WN", 0.0)}}});
   EXPECT_EQ(told.common, "WN");
