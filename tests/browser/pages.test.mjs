@@ -287,6 +287,13 @@ test('a device’s page says whether one structure serves its conditions, and by
   for (const name of new Set([structure.common, structure.ranking[0].model, ...structure.by_condition.map(one => one.model)])) await panel.getByRole('rowheader', {name: new RegExp(`^${name.replaceAll('+', '\\+')}( serves all)?$`)}).waitFor();
   assert.equal(await panel.getByText('serves all').count(), 1);
   assert.equal(await panel.getByRole('cell', {name: 'best', exact: true}).count(), 1);
+  // The table can be of any of them, and its address says so.
+  await page.getByLabel('model').selectOption('WN');
+  await page.waitForURL(/model=WN/);
+  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor({state: 'detached'});
+  assert.equal(await page.getByLabel('model').inputValue(), 'WN');
+  await page.goBack();
+  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor();
   assert.deepEqual(page.loud, []);
   await page.context().close();
 });

@@ -27,7 +27,7 @@ class Attention(TypedDict):
     level: Literal['look', 'wrong']
     # One sentence that a person could act on.
     verdict: str
-    # Of the job.
+    # Of the job; population: a device that its newest characterisation shows not to be of the line of its model.
     kind: str
     # Where the result is read.
     href: str
@@ -592,8 +592,10 @@ class DeviceSummaryCondition(TypedDict):
 class DeviceSummaryLatest(TypedDict):
     """The newest result that has a verdict; null where there is none."""
 
-    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress', 'drive_evaluation']
-    # Of what the result is of: the recording, the investigation, the evaluation or the regression.
+    # Of the job; population: the device is not of the line of its model, as its newest characterisation shows.
+    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress', 'drive_evaluation', 'population']
+    # Of what the result is of: the recording, the investigation, the evaluation or the regression; of a population the
+    # model.
     id: str
     # Where the result is read.
     href: str

@@ -11,6 +11,7 @@ import {copy} from '../shell/copy';
 import {Panel, Progress, Refusal, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {asked} from './job/asked';
+import {Events} from './job/Events';
 import {Cancel, resultPage, timeLeft, what} from './Jobs';
 
 function sentence(job: Job): string {
@@ -56,6 +57,7 @@ export default function JobPage(): JSX.Element {
           </tbody></table>
         </Panel>
       </div>
+      {job.finished_at && <Events job={job.id} />}
     </>;
   }}</Shown>;
 }
