@@ -102,7 +102,10 @@ Result<PopulationReport> stored_populations(Store& store, const std::string& mod
                     "'; say it of your devices with PATCH /v1/devices/{id} and \"model\" or \"imu\".");
   }
   const auto sensors = sensors_of_all(store, *devices, axes_of(quantity));
-  return sensors ? compare_devices(model, *sensors, quantity) : fail(sensors.error());
+  if (!sensors) {
+    return fail(sensors.error());
+  }
+  return compare_devices(model, *sensors, quantity);
 }
 
 Result<std::optional<PopulationReport>> populations_with(Store& store, const std::string& model,
@@ -126,8 +129,7 @@ Result<std::optional<PopulationReport>> populations_with(Store& store, const std
   if (!sensors) {
     return fail(sensors.error());
   }
-  auto report = compare_devices(model, *sensors, std::nullopt);
-  return report ? Result<std::optional<PopulationReport>>(std::move(*report)) : fail(report.error());
+  return std::optional(compare_devices(model, *sensors, std::nullopt));
 }
 
 }  // namespace driftlab::server

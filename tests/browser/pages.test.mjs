@@ -379,6 +379,18 @@ test('the margin of a regression is drawn at the ratio that is tolerated', async
   await page.context().close();
 });
 
+test('a figure of a regression says of which run it is', async () => {
+  // The document of a run has no id of its own; the figure's source and command once said "undefined".
+  const page = await open(browser, daemon, paths.regression);
+  await settled(page);
+  const figure = page.locator('section.panel', {has: page.getByRole('heading', {name: /^Allan deviation,/})}).first();
+  const [download] = await Promise.all([page.waitForEvent('download'), figure.getByRole('button', {name: 'SVG', exact: true}).click()]);
+  assert.match(readFileSync(await download.path(), 'utf8'), new RegExp(`driftlab \\d+\\.\\d+\\.\\d+, ${paths.regression.split('/').pop()}, algorithm`));
+  await figure.getByRole('button', {name: 'curl', exact: true}).click();
+  assert.ok((await page.evaluate(() => navigator.clipboard.readText())).includes(`/v1${paths.regression}`));
+  await page.context().close();
+});
+
 test('curl gets what it got, browsers get pages that forbid everything of others', async () => {
   const get = (path, headers = {}) => fetch(daemon.address + path, {headers});
   const html = {Accept: 'text/html,application/xhtml+xml,*/*;q=0.8'};
