@@ -27,7 +27,7 @@ class Attention(TypedDict):
     level: Literal['look', 'wrong']
     # One sentence that a person could act on.
     verdict: str
-    # Of the job.
+    # Of the job; population: a device that its newest characterisation shows not to be of the line of its model.
     kind: str
     # Where the result is read.
     href: str
@@ -592,8 +592,10 @@ class DeviceSummaryCondition(TypedDict):
 class DeviceSummaryLatest(TypedDict):
     """The newest result that has a verdict; null where there is none."""
 
-    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress']
-    # Of what the result is of: the recording, the investigation, the evaluation or the regression.
+    # Of the job; population: the device is not of the line of its model, as its newest characterisation shows.
+    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress', 'drive_evaluation', 'population']
+    # Of what the result is of: the recording, the investigation, the evaluation or the regression; of a population the
+    # model.
     id: str
     # Where the result is read.
     href: str
@@ -1366,6 +1368,11 @@ class GetSchemaAnswerCase(TypedDict):
     value: float
     ci95: list[float] | None
     text: str
+
+
+class GetWorkersAnswer(TypedDict):
+    # Jobs that run at a time; more wait.
+    workers: int
 
 
 class HealthAnswer(TypedDict):
@@ -2865,8 +2872,7 @@ class ParameterTable(TypedDict):
     model: str | None
     # The condition of the row that the others are compared with, in its compact form.
     reference: str | None
-    # Whether one structure serves every condition; absent where that is not known of exactly these recordings.
-    structure: NotRequired[ParameterTableStructure]
+    structure: NotRequired[PooledSensorStructure]
     # How the model of the table and the structure of the statement are both right; null where they are one.
     model_note: str | None
     pooling: ParameterTablePooling
@@ -2963,15 +2969,6 @@ class ParameterTableSheetComparisonFigure(TypedDict):
     verdict: Literal['agrees', 'above', 'below', None]
 
 
-class ParameterTableStructure(TypedDict):
-    """Whether one structure serves every condition; absent where that is not known of exactly these recordings."""
-
-    verdict: Literal['one_structure', 'changes', 'undecided']
-    # The structure that the statement speaks of.
-    common: str
-    statement: str
-
-
 class ParameterTables(TypedDict):
     """The tables of every axis of a sensor that has results."""
 
@@ -3030,6 +3027,8 @@ class PooledSensorCondition(TypedDict):
 
 
 class PooledSensorStructure(TypedDict):
+    """Whether one structure serves every condition."""
+
     verdict: Literal['one_structure', 'changes', 'undecided']
     statement: str
     # The smallest structure that serves every condition, whole or in part.
@@ -3040,7 +3039,9 @@ class PooledSensorStructure(TypedDict):
     dof: NotRequired[float | None]
     # By how much its criterion exceeds the best in the condition that shows it best; above 6 the structure changes.
     excess: float | None
+    # By the criterion summed over the conditions, the best first; null where a condition lacks a fit.
     ranking: list[PooledSensorStructureRankingItem]
+    # The best of each condition.
     by_condition: list[PooledSensorStructureByConditionItem]
 
 
@@ -4362,6 +4363,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/schemas/{name}', (), (), ('application/schema+json', 'application/json')),
     'getCounts': Operation(
         'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
+    'getWorkers': Operation(
+        'GET', '/v1/workers', (), (), ('application/json',)),
     'listAttention': Operation(
         'GET', '/v1/attention', ('limit', 'cursor', 'sort', 'device', 'since'), (), ('application/json',)),
     'search': Operation(
@@ -4464,6 +4467,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/parameter-tables',
         ('device', 'sensor', 'axis', 'method', 'model', 'reference'),
         ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown', 'text/x-latex')),
+    'getStructure': Operation(
+        'GET', '/v1/structures', ('of',), (), ('application/json',)),
     'getTrends': Operation(
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),
