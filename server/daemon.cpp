@@ -107,6 +107,7 @@ struct Daemon::Parts {
             [this] { return states.standing(); }},
         backups(clock, backup_options(settings)),
         dispatcher(api) {
+    store->tell_damage_to([this](const Error& error) { scrubber.note_damaged_row(damaged_row_of(error)); });
     api.computing = computing_threads(settings);
     api.backups = &backups;
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
