@@ -108,6 +108,13 @@ struct Daemon::Parts {
             [this] { return states.standing(); }},
         backups(clock, backup_options(settings)),
         dispatcher(api) {
+    store->tell_damage_to([this](const Error& error) { scrubber.note_damaged_row(damaged_row_of(error)); });
+    if (store_in.lost_commits > 0) {
+      states.begin(BadState::WritesLost, "damage",
+                   "The database lacks " + std::to_string(store_in.lost_commits) +
+                       " transactions that were acknowledged; its write-ahead log was cut or taken away, or an older "
+                       "database put in its place. Compare it with a backup.");
+    }
     api.computing = computing_threads(settings);
     api.backups = &backups;
     api.workers = [this] { return others == nullptr ? Result<int>(jobs_at_once) : others->workers(); };

@@ -22,7 +22,8 @@ constexpr EngineTexts kColumns{
     "'TEXT' END FROM information_schema.columns WHERE table_schema = current_schema() AND table_name = ?1 ORDER BY "
     "column_name COLLATE \"C\""};
 constexpr EngineTexts kTables{
-    "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name <> 'schema_migrations'",
+    "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT IN "
+    "('schema_migrations', 'commits')",
     "SELECT tablename::TEXT FROM pg_catalog.pg_tables WHERE schemaname = current_schema() AND tablename NOT IN "
     "('schema_migrations', 'store_identity', 'stored_files', 'stored_file_parts')"};
 constexpr std::string_view kSetSequence = "SELECT setval(pg_get_serial_sequence(?1, 'sequence'), greatest(1, ?2))";

@@ -17,7 +17,7 @@ bool is_of_the_disk(const Error& error) {
 void note_state(const StandingState& state, bool begins) {
   Json fields{{"state", name_of(state.state)}, {"cause", state.cause}, {"detail", state.detail}};
   if (!state.object.empty()) {
-    fields["blob"] = state.object;
+    fields[state.state == BadState::RowDamaged ? "row" : "blob"] = state.object;
   }
   begins ? log_error("bad state", fields) : log_info("bad state ended", fields);
 }

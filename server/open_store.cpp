@@ -45,7 +45,8 @@ Result<OpenedStore> open_sqlite(const Settings& settings, const Clock& clock, Au
             {"schema", facts.schema},
             {"wal_reset_bug", facts.wal_reset_bug_possible ? "present, harmless: one writer" : "absent"}};
   Database* const database = &(*store)->database();
-  return OpenedStore{FileHandle(), std::move(*store), std::move(told), database, nullptr, &clock};
+  const std::int64_t lost = facts.lost_commits;
+  return OpenedStore{FileHandle(), std::move(*store), std::move(told), database, nullptr, &clock, {}, lost};
 }
 
 #ifdef DRIFTLAB_POSTGRES

@@ -26,6 +26,8 @@ struct OpenedStore {
   const Clock* clock = nullptr;
   /// The word of a database, which the place of its recordings keeps; empty: they lie in the same directory.
   std::string identity = {};
+  /// Transactions that were acknowledged and are not in the database any more.
+  std::int64_t lost_commits = 0;
 };
 
 /// Holds the word of the PostgreSQL database whose recordings a folder keeps.

@@ -1,9 +1,11 @@
 #include "server/process.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <fstream>
@@ -18,6 +20,13 @@ void occupy_standard_descriptors() {
       (void)::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY);
     }
   }
+}
+
+void share_heaps() {
+#ifdef __GLIBC__
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  (void)::mallopt(M_ARENA_MAX, std::max(2, cores));  // NOLINT(concurrency-mt-unsafe): no other thread yet
+#endif
 }
 
 ProcessUse use_of_this_process() {

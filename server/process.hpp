@@ -12,6 +12,10 @@ namespace driftlab::server {
 /// opened.
 void occupy_standard_descriptors();
 
+/// Freed memory is kept in as many heaps as there are cores, two at least. Left alone, the allocator makes eight for
+/// each core, and every thread that ever did something large keeps a part of it there. Call before threads start.
+void share_heaps();
+
 /// What the process has taken so far.
 struct ProcessUse {
   double resident_bytes = 0.0;

@@ -59,6 +59,16 @@ void Scrubber::note(const std::string& sha256, BlobState state) {
   findings_.damaged = damaged_.size();
 }
 
+void Scrubber::note_damaged_row(const std::string& row) {
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    damaged_rows_.insert(row);
+  }
+  states_.begin(BadState::RowDamaged, "damage",
+                "The row " + row + " of the database is not what was written; take it from a backup, or make it anew.",
+                row);
+}
+
 Status Scrubber::verify_columns(const std::string& sha256) {
   const auto state = server::verify_columns(blobs_, sha256, limits_);
   if (!state) {
@@ -114,6 +124,7 @@ bool Scrubber::read_all(const std::stop_token& stop, const ReadingPace& pace) {
   if (is_mine_ && !is_mine_()) {
     return false;
   }
+  (void)guarded_round("scrubber", [&] { read_rows(stop, pace); });
   const auto hashes = store_.blob_hashes();
   for (const std::string& sha256 : hashes.value_or(std::vector<std::string>{})) {
     (void)guarded_round("scrubber", [&] { read_back(sha256, stop, pace); });
@@ -124,6 +135,30 @@ bool Scrubber::read_all(const std::stop_token& stop, const ReadingPace& pace) {
   const std::lock_guard<std::mutex> guard(mutex_);
   ++findings_.passes;
   return true;
+}
+
+void Scrubber::read_rows(const std::stop_token& stop, const ReadingPace& pace) {
+  std::set<std::string> before;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    before = damaged_rows_;
+  }
+  std::set<std::string> found;
+  const ReadingPace rows = [&](std::size_t bytes) { return pace(bytes) && !stop.stop_requested(); };
+  const Status read = store_.read_back_rows(rows, [&](const std::string& row) {
+    found.insert(row);
+    note_damaged_row(row);
+  });
+  if (!read) {
+    return;  // what was not read may be as damaged as it was
+  }
+  for (const std::string& row : before) {
+    if (!found.contains(row)) {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      damaged_rows_.erase(row);
+      states_.end(BadState::RowDamaged, row);
+    }
+  }
 }
 
 void Scrubber::read_back(const std::string& sha256, const std::stop_token& stop, const ReadingPace& pace) {

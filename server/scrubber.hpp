@@ -1,11 +1,11 @@
 #pragma once
-/// Reads back all stored files in a slow, endless loop, so that damage is found before a file is needed. Damaged
-/// columns are healed; damage that cannot be healed is logged once, counted and shown by /readyz. An exception while
-/// one file is read leaves the others to be read (server/store/guarded_round.hpp).
+/// Reads back all stored files and rows in a slow, endless loop, so that damage is found before what is damaged is
+/// needed. Damaged columns are healed; damage that cannot be healed is logged once, counted and shown by /readyz. An
+/// exception while one file is read leaves the others to be read (server/store/guarded_round.hpp).
 #include "core/read/byte_source.hpp"
 #include "server/api/stored_blob.hpp"
 #include "server/store/bad_states.hpp"
-#include "server/store/store.hpp"
+#include "server/store/sql/sql_store.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -22,7 +22,7 @@ class Scrubber {
   /// References must outlive this object. `bytes_per_second` 0: nothing is read in the background. Damaged files are
   /// bad states.
   /// `is_mine`: whether this process reads, of several on the same files; empty: it is the only one.
-  Scrubber(Store& store, BlobStore& blobs, BadStates& states, DecodeLimits limits, std::int64_t bytes_per_second,
+  Scrubber(SqlStore& store, BlobStore& blobs, BadStates& states, DecodeLimits limits, std::int64_t bytes_per_second,
            std::function<bool()> is_mine = {})
       : store_(store),
         blobs_(blobs),
@@ -44,6 +44,10 @@ class Scrubber {
   /// was found by a job or in the background, and count as sound before.
   [[nodiscard]] Status expect_sound_columns(const std::string& sha256);
 
+  /// A row that somebody found damaged, as `table/key`. Its state ends once the row is sound, or gone, in the
+  /// background.
+  void note_damaged_row(const std::string& row);
+
   struct Findings {
     std::uint64_t bytes_read = 0;
     std::uint64_t healed = 0;
@@ -56,10 +60,11 @@ class Scrubber {
   void run(const std::stop_token& stop);
   /// Reads everything that is stored, once, where this process does that. False: another one does.
   [[nodiscard]] bool read_all(const std::stop_token& stop, const ReadingPace& pace);
+  void read_rows(const std::stop_token& stop, const ReadingPace& pace);
   void read_back(const std::string& sha256, const std::stop_token& stop, const ReadingPace& pace);
   void note(const std::string& sha256, BlobState state);
 
-  Store& store_;
+  SqlStore& store_;
   BlobStore& blobs_;
   BadStates& states_;
   const DecodeLimits limits_;
@@ -68,6 +73,7 @@ class Scrubber {
   mutable std::mutex mutex_;
   Findings findings_;
   std::set<std::string> damaged_;
+  std::set<std::string> damaged_rows_;
   std::jthread thread_;
 };
 

@@ -82,6 +82,13 @@ Status take_over(SqlStore& store, Coordination* others, const Settings& settings
   if (*seen > 0) {
     log_info("results of an earlier release are shown in lists of devices", Json{{"results", *seen}});
   }
+  const auto sealed = store.seal_unsealed_rows();
+  if (!sealed) {
+    return fail(sealed.error());
+  }
+  if (*sealed > 0) {
+    log_info("rows of an earlier release have checksums now", Json{{"rows", *sealed}});
+  }
   const auto queued = store.queue_missing_pools();
   if (!queued) {
     return fail(queued.error());

@@ -9,8 +9,8 @@
 namespace driftlab::server {
 
 /// Charges the faults of an earlier daemon to the jobs it ran, ends the leases of processes that died, lets other
-/// processes in, and queues the poolings that an earlier release left out. `others` is nullptr where this process has
-/// the store alone. Errors: those of the store and of the file of faults.
+/// processes in, seals the rows and queues the poolings that an earlier release left out. `others` is nullptr where
+/// this process has the store alone. Errors: those of the store and of the file of faults.
 [[nodiscard]] Status take_over(SqlStore& store, Coordination* others, const Settings& settings);
 
 /// Reads the tokens; makes the first one, in a file that its owner alone can read, where tokens are required and there

@@ -5,6 +5,7 @@
 #include "server/api/upload.hpp"
 #include "server/api/upload_metadata.hpp"
 #include "server/http/problem.hpp"
+#include "server/store/damaged_row.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -127,6 +128,9 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
 
 Result<Response> delete_recording(ApiContext& context, const Request& request) {
   auto recording = context.store.recording(request.parameters[0]);
+  if (!recording && !damaged_row_of(recording.error()).empty() && request.header("if-match") == "*") {
+    return removed_response(context.store.remove_recording(request.parameters[0], Store::kAnyRevision));
+  }
   if (!recording) {
     return fail(recording.error());
   }

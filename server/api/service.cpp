@@ -30,7 +30,7 @@ Result<Response> ready(const ApiContext& context) {
                {"since", rfc3339(standing.since)},
                {"detail", without_paths({ErrorCode::Io, standing.detail, {}}).message}};
     if (!standing.object.empty()) {
-      state["file"] = standing.object;
+      state[standing.state == BadState::RowDamaged ? "row" : "file"] = standing.object;
     }
     document["states"].push_back(std::move(state));
     if (document["states"].size() == kMostStates) {

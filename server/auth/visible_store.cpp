@@ -1,5 +1,6 @@
 #include "server/auth/visible_store.hpp"
 
+#include "server/store/damaged_row.hpp"
 #include "server/store/principal.hpp"
 
 #include <nlohmann/json.hpp>
@@ -286,10 +287,12 @@ class VisibleStore final : public Store {
   Result<int> forget_old_replies() override { return whole_.forget_old_replies(); }
 
  private:
-  /// Does the work where the object was found for this caller.
+  /// Does the work where the object was found for this caller. What is damaged is removed by a caller who is not
+  /// limited to devices: of which one it is cannot be known.
   template <class Row, class Work>
   static Status if_seen(const Result<Row>& found, const Work& work) {
-    return found ? work() : fail(found.error());
+    const bool damaged = !found && !damaged_row_of(found.error()).empty();
+    return found || (damaged && devices_of_caller() == nullptr) ? work() : fail(found.error());
   }
 
   /// Whether the caller may know of the device; an error as for the object named where not.

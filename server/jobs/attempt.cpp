@@ -69,6 +69,12 @@ Result<JobResults> Attempt::work() {
     return driftlab::fail(ErrorCode::Internal, "This daemon knows no job of kind \"" + job_.kind + "\".",
                           {{"kind", job_.kind}});
   }
+  if (job_.is_damaged) {
+    const Result<Job> sound = context_.store.job(job_.id);  // tells whoever is to know
+    if (!sound) {
+      return driftlab::fail(sound.error());
+    }
+  }
   RunControl control;
   control.stop = stop_.get_token();
   control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };

@@ -23,6 +23,8 @@ enum class BadState {
   DiskNearlyFull,   ///< less than 5 % and less than 10 GiB are free
   FilesFail,        ///< an answer or a job met an error of the disk in the last minutes
   FileDamaged,      ///< a stored file is not what was written
+  RowDamaged,       ///< a row of the database is not
+  WritesLost,       ///< the database is older than what was acknowledged, as this process found it
 };
 
 /// `store_silent`, ...
@@ -34,7 +36,7 @@ enum class BadState {
 
 struct StandingState {
   BadState state = BadState::StoreSilent;
-  std::string object;  ///< hash of the file that is damaged; else empty
+  std::string object;  ///< hash of the file, or `table/key` of the row, that is damaged; else empty
   std::string_view cause;
   std::string detail;  ///< one sentence, with the paths of files
   UtcMicros since = 0;

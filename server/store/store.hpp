@@ -240,8 +240,10 @@ class Store {
   /// in is pooled anew without them. New tags alone are no new revision, and results stay. NotFound; Conflict.
   [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& recording,
                                                            std::int64_t expected_revision) = 0;
-  /// Removes a recording that no job is using; its results go with it, and what they took part in is pooled anew
-  /// without them. NotFound; Conflict (revision; running job).
+  /// Stands for every revision: of a damaged row nobody knows it.
+  static constexpr std::int64_t kAnyRevision = -1;
+  /// Removes a recording that no job is using, damaged or not; its results go with it, and what they took part in is
+  /// pooled anew without them. NotFound; Conflict (revision; running job).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
   /// Hashes of all blob rows, for the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> blob_hashes() = 0;

@@ -9,6 +9,7 @@ import resource
 import shutil
 import signal
 import socket
+import sqlite3
 import subprocess
 import tempfile
 import threading
@@ -16,6 +17,7 @@ import time
 import unittest
 import urllib.parse
 import urllib.request
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -416,6 +418,70 @@ class Kept(unittest.TestCase):
             while not audited("state.begin") and time.monotonic() < until:
                 time.sleep(0.1)
             self.assertEqual(audited("state.begin"), [other], "once, with what it is about")
+
+    def test_a_flipped_bit_in_a_row_is_noticed_before_an_answer_has_it(self) -> None:
+        """One bit of what a row says, in the file of the database itself; and two rows that somebody wrote to."""
+        scrubbing = ("--budget", "scrub_bytes_per_second=0")
+        with Daemon(self.folder / "data", arguments=scrubbing) as daemon:
+            recording = daemon.upload(csv(3000), id="kiwi fruit").json["id"]
+            other = daemon.upload(csv(3000, 2), id="other").json["id"]
+            job = daemon.finished(daemon.characterise(other).json["id"])["id"]
+            asked = daemon.finished(daemon.characterise(other, seed=9).json["id"])["id"]
+            fit = daemon.items("/v1/fits")[0]["id"]
+            self.assertEqual(daemon.terminate(), 0)
+        file = self.folder / "data/driftlab.db"
+        content = file.read_bytes()
+        self.assertGreater(content.count(b"kiwi fruit"), 0)
+        file.write_bytes(content.replace(b"kiwi fruit", b"kiwi gruit"))  # 0x66 and 0x67
+        with closing(sqlite3.connect(file)) as database, database:
+            for table, key, of in (("fits", fit, "id"), ("job_results", job, "job_id"), ("jobs", asked, "id")):
+                column = "request_json" if table == "jobs" else "document_json"
+                other = f"UPDATE {table} SET {column} = replace({column}, '1', '3') WHERE {of} = ?"
+                changed = database.execute(other, (key,)).rowcount
+                self.assertEqual(changed, 1, table)
+        rows = {f"/v1/recordings/{recording}": f"recordings/{recording}", f"/v1/fits/{fit}": f"fits/{fit}",
+                f"/v1/jobs/{job}/result": f"job_results/{job}", f"/v1/jobs/{asked}": f"jobs/{asked}"}
+        checked = tool(PROGRAM, "check", "--data", str(self.folder / "data"))
+        self.assertEqual(checked.returncode, 1)
+        for row in rows.values():
+            self.assertIn(f"The row {row} of the database is damaged.", checked.stderr)
+        with Daemon(self.folder / "data", arguments=scrubbing) as daemon:
+            for target, row in rows.items():
+                for _ in range(2):
+                    answer = daemon.get(target)
+                    self.assertEqual((answer.status, answer.json["code"]), (500, "io"), answer.describe())
+                    self.assertEqual(answer.json["where"], {"damaged_row": row})
+            self.assertEqual(daemon.characterise(recording).status, 500, "no result is made of it")
+            states = daemon.get("/readyz").json["states"]
+            self.assertEqual({(state["state"], state["cause"]) for state in states}, {("row_damaged", "damage")})
+            self.assertEqual({state["row"] for state in states}, set(rows.values()))
+            self.assertIn('driftlab_bad_states{state="row_damaged",cause="damage"} 4\n', daemon.get("/metrics").text)
+            self.assertEqual(sorted(line["row"] for line in daemon.log if line.get("event") == "bad state"), sorted(rows.values()), "once")
+            until = time.monotonic() + PATIENCE_S
+            begun: list[str] = []
+            while begun != sorted(rows.values()) and time.monotonic() < until:
+                begun = sorted(row["object"] for row in daemon.items("/v1/audit") if row["action"] == "state.begin")
+                time.sleep(0.1)
+            self.assertEqual(begun, sorted(rows.values()))
+            self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": '"1"'}).status, 500)
+            gone = daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": "*"})
+            self.assertEqual(gone.status, 204, gone.describe())
+
+    def test_the_background_finds_damaged_rows_and_says_when_they_are_gone(self) -> None:
+        with Daemon(self.folder / "data") as daemon:
+            recording = daemon.upload(csv(3000)).json["id"]
+        with closing(sqlite3.connect(self.folder / "data/driftlab.db")) as database, database:
+            [(sound,)] = database.execute("SELECT quality_json FROM recordings").fetchall()
+            database.execute("UPDATE recordings SET quality_json = ?", (sound.replace("0", "1", 1),))
+        with Daemon(self.folder / "data", arguments=("--budget", "scrub_bytes_per_second=1000000000")) as daemon:
+            daemon.logged(event="bad state", state="row_damaged", cause="damage", row=f"recordings/{recording}")
+            gone = daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": "*"})
+            self.assertEqual(gone.status, 204, gone.describe())
+            if not STORE:
+                deadline = time.monotonic() + 90  # the next round begins a minute after the last
+                while daemon.get("/readyz").json != {"status": "ready"} and time.monotonic() < deadline:
+                    time.sleep(0.5)
+            self.assertEqual(daemon.get("/readyz").json, {"status": "ready"})
 
     def test_check_tells_what_is_damaged_or_missing(self) -> None:
         with Daemon(self.folder / "data") as daemon:

@@ -222,6 +222,98 @@ class BadStates(Round):
             for target in (f"/v1/jobs/{job}", "/v1/jobs", "/readyz", "/metrics", "/v1/audit"):
                 daemon.get(target)
 
+    def lives(self, count: int) -> History:
+        """Recordings that were acknowledged before the daemon was killed: they are in the write-ahead log alone."""
+        history = History()
+        client = Client(history, SEED)
+        with self.daemon() as daemon:
+            for _ in range(count):
+                client.upload(daemon)
+            daemon.kill()
+        self.assertGreater((self.data / "driftlab.db-wal").stat().st_size, 0)
+        return history
+
+    def audited_as_lost(self, daemon: Daemon) -> list[dict[str, Any]]:
+        return [row for row in self.states(daemon, "state.begin") if row["object"] == "writes_lost"]
+
+    def said_to_be_lost(self, daemon: Daemon) -> int:
+        """Says it everywhere, once; how many transactions it says."""
+        [state] = daemon.get("/readyz").json["states"]
+        self.assertEqual((state["state"], state["cause"]), ("writes_lost", "damage"))
+        self.assertIn('driftlab_bad_states{state="writes_lost",cause="damage"} 1\n', daemon.get("/metrics").text)
+        logged = [line for line in daemon.log if line.get("event") == "bad state" and line["state"] == "writes_lost"]
+        self.assertEqual(len(logged), 1)
+        self.wait_until(daemon, "in the audit log", lambda: self.audited_as_lost(daemon))
+        return int(state["detail"].split("lacks ")[1].split()[0])
+
+    def test_a_log_that_was_cut_while_the_daemon_was_down(self) -> None:
+        """SQLite takes what is left of its log for all that there was: nobody would be told."""
+        for name, left in (("half of it", 0.5), ("a page of it", None), ("nothing of it", 0.0), ("it is gone", -1.0)):
+            with self.subTest(name):
+                self.setUp()
+                history = self.lives(12)
+                log = self.data / "driftlab.db-wal"
+                size = log.stat().st_size
+                if left == -1.0:
+                    log.unlink()
+                else:
+                    os.truncate(log, size - 4096 if left is None else int(size * left))
+                with self.daemon() as daemon:
+                    there = {recording["id"] for recording in daemon.items("/v1/recordings?limit=500")}
+                    gone = set(history.recordings) - there
+                    self.assertTrue(gone or left is None)
+                    self.assertGreaterEqual(self.said_to_be_lost(daemon), len(gone))
+                    Client(History(), SEED + 1).upload(daemon)
+                    self.assertEqual(daemon.terminate(), 0)
+                self.assertEqual(integrity(self.data), [("ok",)])
+                with self.daemon() as daemon:
+                    self.assertEqual(daemon.get("/readyz").json, {"status": "ready"}, "it was said; a second loss would be another one")
+                    self.assertTrue(self.audited_as_lost(daemon), "for ever")
+
+    def test_a_log_that_is_whole_is_not_said_to_be_cut(self) -> None:
+        history = self.lives(3)
+        for _ in range(2):
+            with self.daemon() as daemon:
+                self.judge(daemon, history)
+                self.assertEqual(daemon.get("/readyz").json, {"status": "ready"})
+                daemon.kill()
+
+    def test_a_log_that_is_cut_under_the_daemon(self) -> None:
+        """What is written behind a cut would leave a hole of zeros, which a checkpoint copies over good pages."""
+        history = History()
+        client = Client(history, SEED)
+        with self.daemon() as daemon:
+            for _ in range(8):
+                client.upload(daemon)
+            log = self.data / "driftlab.db-wal"
+            os.truncate(log, log.stat().st_size // 2)
+            refused = daemon.upload(b"gz\n1\n2\n", rate_hz=100, columns="gz=angular_rate:z:deg/s")
+            self.assertEqual(refused.status, 500, refused.describe())
+            self.wait_until(daemon, "not ready", lambda: daemon.get("/readyz").status == 503)
+            self.assertIn("write-ahead log", daemon.logged(event="bad state", state="store_unwritable")["detail"])
+            daemon.terminate()
+        self.assertEqual(integrity(self.data), [("ok",)], "nothing was copied from a log with a hole")
+        with self.daemon() as daemon:
+            gone = set(history.recordings) - {recording["id"] for recording in daemon.items("/v1/recordings?limit=500")}
+            self.assertTrue(gone)
+            self.assertGreaterEqual(self.said_to_be_lost(daemon), len(gone))
+
+    def test_a_log_that_is_taken_away_under_the_daemon(self) -> None:
+        history = History()
+        client = Client(history, SEED)
+        with self.daemon() as daemon:
+            for _ in range(8):
+                client.upload(daemon)
+            (self.data / "driftlab.db-wal").unlink()
+            refused = daemon.upload(b"gz\n1\n2\n", rate_hz=100, columns="gz=angular_rate:z:deg/s")
+            self.assertEqual(refused.status, 500, refused.describe())
+            self.assertEqual(daemon.get("/readyz").status, 503)
+            daemon.kill()
+        with self.daemon() as daemon:
+            self.judge(daemon, history, whole=True)
+            self.assertEqual(daemon.get("/readyz").json, {"status": "ready"}, "it was still open, and is in the database")
+        self.assertEqual(integrity(self.data), [("ok",)])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3183,12 +3183,15 @@ class ReadinessAnswer(TypedDict):
 
 
 class ReadinessAnswerState(TypedDict):
-    state: Literal['store_silent', 'store_unwritable', 'blobs_silent', 'disk_nearly_full', 'files_fail', 'file_damaged']
+    state: Literal['store_silent', 'store_unwritable', 'blobs_silent', 'disk_nearly_full', 'files_fail', 'file_damaged',
+                   'row_damaged', 'writes_lost']
     cause: Literal['io', 'disk_full', 'damage']
     since: str
     detail: str
     # SHA-256 of the file as it was uploaded.
     file: NotRequired[str]
+    # The row that is damaged, as `table/key`.
+    row: NotRequired[str]
 
 
 class Recording(TypedDict):

@@ -2,6 +2,7 @@
 /// Transactions of a database engine: where the store hands its work.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
+#include "server/store/damaged_row.hpp"
 #include "server/store/sql/connection.hpp"
 #include "server/store/sql/write_times.hpp"
 
@@ -20,6 +21,8 @@ enum class WriteKind {
   Fenced,   ///< each statement decides by the row that it changes
 };
 
+using DamageListener = std::function<void(const Error& error)>;
+
 class Database {
  public:
   Database() = default;
@@ -33,18 +36,23 @@ class Database {
   template <class Work>
   [[nodiscard]] auto write(WriteKind kind, Work work) {
     const WriteTimes::Watch watch(write_times_);
-    return run<Work>([&](const std::function<Status(Connection&)>& told) { return run_write(kind, told); }, work);
+    return noted(
+        run<Work>([&](const std::function<Status(Connection&)>& told) { return run_write(kind, told); }, work));
   }
 
   /// Runs `work(connection)`, which returns a `Result`, over one snapshot of the database. Thread safe; not to be
   /// called from within `work`.
   template <class Work>
   [[nodiscard]] auto read(Work work) {
-    return run<Work>([&](const std::function<Status(Connection&)>& told) { return run_read(told); }, work);
+    return noted(run<Work>([&](const std::function<Status(Connection&)>& told) { return run_read(told); }, work));
   }
 
   /// The time of the transaction that the connection is in.
   [[nodiscard]] virtual UtcMicros now(const Connection& connection) const = 0;
+  /// `listener` is told of every row that was found damaged, by the error that names it (damaged_row.hpp). To be called
+  /// before the first transaction of others.
+  void tell_damage_to(DamageListener listener) { damage_listener_ = std::move(listener); }
+
   /// Store::changes.
   [[nodiscard]] virtual std::uint64_t changes() const = 0;
   [[nodiscard]] WriteTimes::Counts write_times() const { return write_times_.counts(); }
@@ -57,6 +65,15 @@ class Database {
 
  private:
   WriteTimes write_times_;
+  DamageListener damage_listener_;
+
+  template <class Outcome>
+  [[nodiscard]] Outcome noted(Outcome outcome) const {
+    if (!outcome && damage_listener_ && !damaged_row_of(outcome.error()).empty()) {
+      damage_listener_(outcome.error());
+    }
+    return outcome;
+  }
 
   template <class Work, class Runner>
   [[nodiscard]] static auto run(const Runner& runner, Work& work) {

@@ -5,7 +5,19 @@
 namespace driftlab::server::tables {
 namespace {
 
-constexpr std::string_view kColumns = "id, device_id, unique_key, document_json, created_at";
+constexpr std::string_view kColumns = "id, device_id, unique_key, document_json, created_at, seal";
+
+template <class Row>
+Result<Row> read_document(const Statement& row, std::string_view table) {
+  return sound_row(table, row.text(0), Row{row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)},
+                   row.text(5));
+}
+
+Result<Study> read_study(const Statement& row) { return read_document<Study>(row, "studies"); }
+Result<StoredDrive> read_drive(const Statement& row) { return read_document<StoredDrive>(row, "drives"); }
+Result<StoredCalibration> read_calibration(const Statement& row) {
+  return read_document<StoredCalibration>(row, "calibrations");
+}
 
 /// A kind of document: `Row` holds a column in each of its members.
 template <class Row>
@@ -16,7 +28,7 @@ struct DocumentTable {
 
   [[nodiscard]] std::string select() const { return "SELECT " + std::string(kColumns) + " FROM " + std::string(name); }
 
-  static Row read(const Statement& row) { return {row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)}; }
+  Result<Row> (*read)(const Statement&);
 
   /// The row of the document's unique key, inserted if absent. `Outcome` is the row and whether it was made.
   template <class Outcome>
@@ -35,8 +47,8 @@ struct DocumentTable {
     made.created_at = now;
     Status inserted =
         connection
-            .prepare("INSERT INTO " + std::string(name) + " (" + std::string(kColumns) + ") VALUES (?, ?, ?, ?, ?)")
-            .bind(made.id, made.device_id, made.unique_key, made.document_json, made.created_at)
+            .prepare("INSERT INTO " + std::string(name) + " (" + std::string(kColumns) + ") VALUES (?, ?, ?, ?, ?, ?)")
+            .bind(made.id, made.device_id, made.unique_key, made.document_json, made.created_at, seal_of(made))
             .run();
     if (!inserted) {
       return fail(inserted.error());
@@ -61,9 +73,9 @@ struct DocumentTable {
   }
 };
 
-constexpr DocumentTable<Study> kStudies{"studies", "stu", "study"};
-constexpr DocumentTable<StoredDrive> kDrives{"drives", "drv", "drive"};
-constexpr DocumentTable<StoredCalibration> kCalibrations{"calibrations", "cal", "calibration"};
+constexpr DocumentTable<Study> kStudies{"studies", "stu", "study", read_study};
+constexpr DocumentTable<StoredDrive> kDrives{"drives", "drv", "drive", read_drive};
+constexpr DocumentTable<StoredCalibration> kCalibrations{"calibrations", "cal", "calibration", read_calibration};
 
 }  // namespace
 

@@ -4,23 +4,25 @@ namespace driftlab::server::tables {
 namespace {
 
 constexpr std::string_view kSelect =
-    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at FROM devices";
+    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at, seal FROM devices";
 constexpr std::string_view kByIdOrName =
-    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at FROM devices "
+    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at, seal FROM devices "
     "WHERE id = ?1 OR name = ?1 ORDER BY id = ?1 DESC LIMIT 1";
 constexpr std::string_view kByName =
-    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at FROM devices WHERE name = ?";
+    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at, seal FROM devices WHERE name "
+    "= ?";
 constexpr std::string_view kById =
-    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at FROM devices WHERE id = ?";
+    "SELECT id, name, model, imu, serial, labels_json, revision, created_at, updated_at, seal FROM devices WHERE id = "
+    "?";
 constexpr std::string_view kInsert =
-    "INSERT INTO devices (id, name, model, imu, serial, labels_json, revision, created_at, updated_at) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "INSERT INTO devices (id, name, model, imu, serial, labels_json, revision, created_at, updated_at, seal) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kUpdate =
-    "UPDATE devices SET model = ?2, imu = ?3, serial = ?4, labels_json = ?5, revision = ?6, updated_at = ?7 "
-    "WHERE id = ?1";
+    "UPDATE devices SET model = ?2, imu = ?3, serial = ?4, labels_json = ?5, revision = ?6, updated_at = ?7, "
+    "seal = ?8 WHERE id = ?1";
 constexpr std::string_view kSought = "name || ' ' || model || ' ' || imu || ' ' || serial || ' ' || id";
 
-Device read_device(const Statement& row) {
+Result<Device> read_device(const Statement& row) {
   Device device;
   device.id = row.text(0);
   device.name = row.text(1);
@@ -31,7 +33,7 @@ Device read_device(const Statement& row) {
   device.revision = row.integer(6);
   device.created_at = row.integer(7);
   device.updated_at = row.integer(8);
-  return device;
+  return sound_row("devices", row.text(0), std::move(device), row.text(9));
 }
 
 Result<Device> one_device(Connection& connection, std::string_view sql, std::string_view value) {
@@ -64,7 +66,7 @@ Result<Store::DeviceOutcome> ensure_device(Connection& connection, const Device&
   made.updated_at = now;
   Status inserted = connection.prepare(kInsert)
                         .bind(made.id, made.name, made.model, made.imu, made.serial, made.labels_json, made.revision,
-                              made.created_at, made.updated_at)
+                              made.created_at, made.updated_at, seal_of(made))
                         .run();
   if (!inserted) {
     return fail(inserted.error());
@@ -101,7 +103,7 @@ Result<Device> update_device(Connection& connection, std::string_view id, const 
   changed.updated_at = now;
   Status updated = connection.prepare(kUpdate)
                        .bind(changed.id, changed.model, changed.imu, changed.serial, changed.labels_json,
-                             changed.revision, changed.updated_at)
+                             changed.revision, changed.updated_at, seal_of(changed))
                        .run();
   if (!updated) {
     return fail(updated.error());

@@ -23,7 +23,9 @@ constexpr std::string_view kMark =
 constexpr std::string_view kUnseen =
     "SELECT id, document_json, device_id, quantity, axis FROM channel_results WHERE glance_json = '' ORDER BY sequence "
     "LIMIT ?";
-constexpr std::string_view kSee = "UPDATE channel_results SET glance_json = ?2, glance_level = ?3 WHERE id = ?1";
+/// The row is sealed anew with all others that have no seal.
+constexpr std::string_view kSee =
+    "UPDATE channel_results SET glance_json = ?2, glance_level = ?3, seal = '' WHERE id = ?1";
 
 /// Each reads, of the devices that it ends with, all at once.
 constexpr std::string_view kConditions = "SELECT device_id, condition, count(*) FROM recordings WHERE device_id IN (";
@@ -70,7 +72,7 @@ Devices devices_of(const std::vector<std::string>& ids, const std::optional<Visi
 
 /// Hands every row of `begin` + the devices + `end` to `read`.
 Status each_row(Connection& connection, std::string_view begin, const Devices& devices, std::string_view end,
-                const std::function<void(const Statement&)>& read) {
+                const std::function<Status(const Statement&)>& read) {
   Statement statement = connection.prepare(std::string(begin) + devices.select + std::string(end));
   for (const std::string& value : devices.values) {
     statement.bind(value);
@@ -80,7 +82,9 @@ Status each_row(Connection& connection, std::string_view begin, const Devices& d
     if (!row || !*row) {
       return row ? Status{} : fail(row.error());
     }
-    read(statement);
+    if (Status done = read(statement); !done) {
+      return done;
+    }
   }
 }
 
@@ -125,15 +129,20 @@ Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std:
                                   const std::optional<Visibility>& visible) {
   const Devices devices = devices_of(device_ids, visible);
   DeviceOverviews found;
-  Status read = each_row(connection, "", devices, "", [&](const Statement& row) { found[row.text(0)]; });
+  Status read = each_row(connection, "", devices, "", [&](const Statement& row) {
+    found[row.text(0)];
+    return Status{};
+  });
   if (read) {
     read = each_row(connection, kConditions, devices, kByCondition, [&](const Statement& row) {
       found[row.text(0)].conditions.push_back({row.text(1), row.integer(2)});
+      return Status{};
     });
   }
   if (read) {
     read = each_row(connection, kShown, devices, kByAxis, [&](const Statement& row) {
       found[row.text(0)].axes.push_back({row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)});
+      return Status{};
     });
   }
   if (read) {
@@ -145,12 +154,13 @@ Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std:
       newest.recording_id = row.text(3);
       newest.created_at = row.integer(4);
       found[newest.device_id].newest = std::move(newest);
+      return Status{};
     });
   }
   if (read) {
     read = each_row(connection, kVerdict, devices, kEndOfNewest, [&](const Statement& row) {
-      ResultVerdict verdict = read_verdict(row);
-      found[verdict.device_id].verdict = std::move(verdict);
+      return read_verdict(row).map(
+          [&](ResultVerdict verdict) { found[verdict.device_id].verdict = std::move(verdict); });
     });
   }
   return read ? Result<DeviceOverviews>(std::move(found)) : fail(read.error());

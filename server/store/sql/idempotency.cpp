@@ -6,18 +6,20 @@ namespace {
 constexpr UtcMicros kLifetimeMicros = 24LL * 3600 * 1'000'000;
 
 constexpr std::string_view kSelect =
-    "SELECT key, method, target, body_sha256, status, headers_json, body, created_at FROM idempotent_replies "
+    "SELECT key, method, target, body_sha256, status, headers_json, body, created_at, seal FROM idempotent_replies "
     "WHERE key = ? AND created_at > ?";
-/// ?8 now, ?9 the time before which a reply is forgotten. A younger reply stays: the first answer is the answer.
+/// ?8 now, ?9 the time before which a reply is forgotten, ?10 its seal. A younger reply stays: the first answer is the
+/// answer.
 constexpr std::string_view kRemember =
-    "INSERT INTO idempotent_replies (key, method, target, body_sha256, status, headers_json, body, created_at) "
-    "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (key) DO UPDATE SET method = excluded.method, "
+    "INSERT INTO idempotent_replies (key, method, target, body_sha256, status, headers_json, body, created_at, seal) "
+    "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?10) ON CONFLICT (key) DO UPDATE SET method = excluded.method, "
     "target = excluded.target, body_sha256 = excluded.body_sha256, status = excluded.status, "
-    "headers_json = excluded.headers_json, body = excluded.body, created_at = excluded.created_at "
+    "headers_json = excluded.headers_json, body = excluded.body, created_at = excluded.created_at, seal = "
+    "excluded.seal "
     "WHERE idempotent_replies.created_at <= ?9";
 constexpr std::string_view kForget = "DELETE FROM idempotent_replies WHERE created_at <= ?";
 
-IdempotentReply read_reply(const Statement& row) {
+Result<IdempotentReply> read_reply(const Statement& row) {
   IdempotentReply reply;
   reply.key = row.text(0);
   reply.method = row.text(1);
@@ -27,7 +29,7 @@ IdempotentReply read_reply(const Statement& row) {
   reply.headers_json = row.text(5);
   reply.body = row.text(6);
   reply.created_at = row.integer(7);
-  return reply;
+  return sound_row("idempotent_replies", row.text(0), std::move(reply), row.text(8));
 }
 
 }  // namespace
@@ -41,7 +43,7 @@ Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, 
 Status remember_reply(Connection& connection, const IdempotentReply& reply, UtcMicros now) {
   return connection.prepare(kRemember)
       .bind(reply.key, reply.method, reply.target, reply.body_sha256, reply.status, reply.headers_json, reply.body, now,
-            now - kLifetimeMicros)
+            now - kLifetimeMicros, seal_of(reply))
       .run();
 }
 

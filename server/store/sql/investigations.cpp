@@ -4,16 +4,16 @@ namespace driftlab::server::tables {
 namespace {
 
 #define DRIFTLAB_INVESTIGATION_COLUMNS \
-  "id, job_id, device_id, study_id, baseline_id, model_id, summary_json, page, created_at"
+  "id, job_id, device_id, study_id, baseline_id, model_id, summary_json, page, created_at, seal"
 
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_INVESTIGATION_COLUMNS " FROM investigations";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_INVESTIGATION_COLUMNS " FROM investigations WHERE id = ?";
 constexpr std::string_view kSought =
     "(SELECT devices.name FROM devices WHERE devices.id = device_id) || ' ' || id || ' ' || summary_json";
 constexpr std::string_view kInsert =
-    "INSERT INTO investigations (" DRIFTLAB_INVESTIGATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "INSERT INTO investigations (" DRIFTLAB_INVESTIGATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
-Investigation read_investigation(const Statement& row) {
+Result<Investigation> read_investigation(const Statement& row) {
   Investigation investigation;
   investigation.id = row.text(0);
   investigation.job_id = row.text(1);
@@ -24,7 +24,7 @@ Investigation read_investigation(const Statement& row) {
   investigation.summary_json = row.text(6);
   investigation.page = row.text(7);
   investigation.created_at = row.integer(8);
-  return investigation;
+  return sound_row("investigations", row.text(0), std::move(investigation), row.text(9));
 }
 
 }  // namespace
@@ -36,10 +36,12 @@ Status insert_investigations(Connection& connection, std::string_view job_id, co
       return fail(added.error());
     }
   }
-  for (const Investigation& made : results.investigations) {
+  for (Investigation made : results.investigations) {
+    made.id = made.id.empty() ? make_id("inv", now) : made.id;
+    made.job_id = job_id;
     Status inserted = connection.prepare(kInsert)
-                          .bind(made.id.empty() ? make_id("inv", now) : made.id, job_id, made.device_id, made.study_id,
-                                made.baseline_id, made.model_id, made.summary_json, made.page, now)
+                          .bind(made.id, made.job_id, made.device_id, made.study_id, made.baseline_id, made.model_id,
+                                made.summary_json, made.page, now, seal_of(made))
                           .run();
     if (!inserted) {
       return inserted;

@@ -25,8 +25,8 @@ constexpr std::string_view kById = DRIFTLAB_NAMED_JOBS " WHERE id = ?";
 constexpr std::string_view kEqualJob =
     DRIFTLAB_NAMED_JOBS " WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
 constexpr std::string_view kInsert =
-    "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
-    "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7)";
+    "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, seal) "
+    "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7, ?8)";
 /// ?1 texts of the request as a list, ?2 the job. Whatever of them is the id of something that a device has names that
 /// device.
 constexpr std::string_view kNoteDevices =
@@ -112,6 +112,7 @@ Job read_job(const Statement& row) {
   job.started_at = row.optional_integer(15);
   job.finished_at = row.optional_integer(16);
   job.problem_json = row.text(17);
+  job.is_damaged = !seal_fits(row.text(18), seal_of(job));
   return job;
 }
 
@@ -119,8 +120,8 @@ namespace {
 
 Job read_named_job(const Statement& row) {
   Job job = read_job(row);
-  job.device_name = row.text(18);
-  job.recording_name = row.text(19);
+  job.device_name = row.text(19);
+  job.recording_name = row.text(20);
   return job;
 }
 
@@ -142,10 +143,15 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
   if (!existing->empty()) {
     return EnqueuedJob{std::move(existing->front()), false};
   }
-  const std::string id = make_id("job", now);
-  Status inserted = connection.prepare(kInsert)
-                        .bind(id, job.kind, job.priority, kMaxFailures, job.unique_key, job.request_json, now)
-                        .run();
+  Job made;
+  made.id = make_id("job", now);
+  made.kind = job.kind;
+  made.request_json = job.request_json;
+  const std::string& id = made.id;
+  Status inserted =
+      connection.prepare(kInsert)
+          .bind(id, job.kind, job.priority, kMaxFailures, job.unique_key, job.request_json, now, seal_of(made))
+          .run();
   if (inserted) {
     inserted = connection.prepare(kNoteDevices).bind(possible_ids(job.request_json), id).run();
   }
@@ -158,7 +164,7 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
   if (!inserted) {
     return fail(inserted.error());
   }
-  return tables::job(connection, id).map([](Job made) { return EnqueuedJob{std::move(made), true}; });
+  return tables::job(connection, id).map([](Job queued) { return EnqueuedJob{std::move(queued), true}; });
 }
 
 Result<Job> job(Connection& connection, std::string_view id) {
@@ -178,6 +184,11 @@ Result<Job> job(Connection& connection, std::string_view id) {
   }
   found->attempt_problems_json = std::move(*problems);
   return found;
+}
+
+Result<Job> sound_job(Connection& connection, std::string_view id) {
+  Result<Job> found = job(connection, id);
+  return found && found->is_damaged ? fail(damaged_row("jobs", sealed_table("jobs").noun, found->id)) : found;
 }
 
 Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {

@@ -3,18 +3,20 @@
 namespace driftlab::server::tables {
 namespace {
 
-#define DRIFTLAB_MODEL_COLUMNS "id, parent_id, device_id, unique_key, name, document_json, provenance_json, created_at"
+#define DRIFTLAB_MODEL_COLUMNS \
+  "id, parent_id, device_id, unique_key, name, document_json, provenance_json, created_at, seal"
 
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_MODEL_COLUMNS " FROM models";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_MODEL_COLUMNS " FROM models WHERE id = ?";
 constexpr std::string_view kByKey = "SELECT " DRIFTLAB_MODEL_COLUMNS " FROM models WHERE unique_key = ?";
-constexpr std::string_view kInsert = "INSERT INTO models (" DRIFTLAB_MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr std::string_view kInsert =
+    "INSERT INTO models (" DRIFTLAB_MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
 std::optional<std::string> some(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::string>(text);
 }
 
-Model read_model(const Statement& row) {
+Result<Model> read_model(const Statement& row) {
   Model model;
   model.id = row.text(0);
   model.parent_id = row.text(1);
@@ -24,7 +26,7 @@ Model read_model(const Statement& row) {
   model.document_json = row.text(5);
   model.provenance_json = row.text(6);
   model.created_at = row.integer(7);
-  return model;
+  return sound_row("models", row.text(0), std::move(model), row.text(8));
 }
 
 }  // namespace
@@ -49,7 +51,7 @@ Result<Store::ModelOutcome> add_model(Connection& connection, const Model& model
   made.created_at = now;
   Status inserted = connection.prepare(kInsert)
                         .bind(made.id, some(made.parent_id), some(made.device_id), made.unique_key, made.name,
-                              made.document_json, made.provenance_json, made.created_at)
+                              made.document_json, made.provenance_json, made.created_at, seal_of(made))
                         .run();
   if (!inserted) {
     return fail(inserted.error());

@@ -22,8 +22,10 @@ constexpr std::string_view kForgetLine =
     "DELETE FROM verdicts WHERE device_id = ? AND recording_id IS NULL AND channel = ?";
 /// ?2 the job. A result that speaks of no device by itself is that of the only one which its job names.
 constexpr std::string_view kInsertVerdict =
-    "INSERT INTO verdicts (id, job_id, device_id, recording_id, channel, level, verdict, created_at) VALUES (?1, ?2, "
-    "coalesce(?3, (SELECT max(device_id) FROM job_devices WHERE job_id = ?2 HAVING count(*) = 1)), ?4, ?5, ?6, ?7, ?8)";
+    "INSERT INTO verdicts (id, job_id, device_id, recording_id, channel, level, verdict, created_at, seal) VALUES (?1, "
+    "?2, "
+    "coalesce(?3, (SELECT max(device_id) FROM job_devices WHERE job_id = ?2 HAVING count(*) = 1)), ?4, ?5, ?6, ?7, ?8, "
+    "?9)";
 
 std::optional<std::string> some(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::string>(text);
@@ -31,9 +33,11 @@ std::optional<std::string> some(const std::string& text) {
 
 }  // namespace
 
-ResultVerdict read_verdict(const Statement& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4),    row.text(5),
-          row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)};
+Result<ResultVerdict> read_verdict(const Statement& row) {
+  return sound_row("verdicts", row.text(0),
+                   ResultVerdict{row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5),
+                                 row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)},
+                   row.text(11));
 }
 
 Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible) {
@@ -76,7 +80,7 @@ Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const Verdic
 }
 
 Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results, UtcMicros now) {
-  for (const ResultVerdict& made : results.verdicts) {
+  for (ResultVerdict made : results.verdicts) {
     const bool of_line = made.recording_id.empty() && !made.channel.empty();
     if (of_line || !made.recording_id.empty()) {
       Status forgotten = of_line ? connection.prepare(kForgetLine).bind(made.device_id, made.channel).run()
@@ -88,9 +92,11 @@ Status insert_verdicts(Connection& connection, std::string_view job_id, const Jo
         continue;
       }
     }
+    made.id = made.id.empty() ? make_id("att", now) : made.id;
+    made.job_id = job_id;
     Status inserted = connection.prepare(kInsertVerdict)
-                          .bind(made.id.empty() ? make_id("att", now) : made.id, job_id, some(made.device_id),
-                                some(made.recording_id), made.channel, made.level, made.verdict, now)
+                          .bind(made.id, job_id, some(made.device_id), some(made.recording_id), made.channel,
+                                made.level, made.verdict, now, seal_of(made))
                           .run();
     if (!inserted) {
       return inserted;

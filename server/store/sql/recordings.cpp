@@ -6,11 +6,11 @@ namespace driftlab::server::tables {
 namespace {
 
 constexpr std::string_view kSelectBlob =
-    "SELECT sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at FROM blobs "
+    "SELECT sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at, seal FROM blobs "
     "WHERE sha256 = ?";
 constexpr std::string_view kInsertBlob =
-    "INSERT INTO blobs (sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (sha256) DO NOTHING";
+    "INSERT INTO blobs (sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at, seal) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (sha256) DO NOTHING";
 constexpr std::string_view kBlobHashes = "SELECT sha256 FROM blobs ORDER BY sha256";
 constexpr std::string_view kRemoveUnusedBlob =
     "DELETE FROM blobs WHERE sha256 = ?1 AND NOT EXISTS (SELECT 1 FROM recordings WHERE blob_sha256 = ?1)";
@@ -18,7 +18,7 @@ constexpr std::string_view kRemoveUnusedBlob =
 #define DRIFTLAB_RECORDING_COLUMNS                                                                         \
   "id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, " \
   "tags_json, tags_revision, file_name, name, coalesce((SELECT max(job_id) FROM job_recordings WHERE "     \
-  "recording_id = recordings.id), '')"
+  "recording_id = recordings.id), ''), seal"
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id = ?";
 constexpr std::string_view kByDeviceAndBlob =
@@ -36,10 +36,10 @@ constexpr std::string_view kBlobBytes = "SELECT coalesce(sum(bytes), 0) FROM blo
 constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
-    "updated_at, tags_json, file_name, name) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "updated_at, tags_json, file_name, name, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kUpdate =
     "UPDATE recordings SET metadata_json = ?2, condition = ?3, quality_json = ?4, revision = ?5, updated_at = ?6, "
-    "tags_json = ?7, tags_revision = ?8, name = ?9 WHERE id = ?1";
+    "tags_json = ?7, tags_revision = ?8, name = ?9, seal = ?10 WHERE id = ?1";
 constexpr std::string_view kRemove = "DELETE FROM recordings WHERE id = ?";
 constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
 /// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
@@ -52,7 +52,7 @@ constexpr std::string_view kRemoveDocuments =
     " UNION SELECT pool.id FROM jobs AS pool JOIN channel_results AS member ON instr(pool.request_json, member.id) > 0"
     " WHERE pool.kind = 'pool' AND member.recording_id = ?1)";
 
-Blob read_blob(const Statement& row) {
+Result<Blob> read_blob(const Statement& row) {
   Blob blob;
   blob.sha256 = row.text(0);
   blob.bytes = row.integer(1);
@@ -62,7 +62,7 @@ Blob read_blob(const Statement& row) {
   blob.columns_json = row.text(5);
   blob.notes_json = row.text(6);
   blob.created_at = row.integer(7);
-  return blob;
+  return sound_row("blobs", row.text(0), std::move(blob), row.text(8));
 }
 
 Recording read_recording(const Statement& row) {
@@ -84,6 +84,10 @@ Recording read_recording(const Statement& row) {
   return recording;
 }
 
+Result<Recording> read_sound_recording(const Statement& row) {
+  return sound_row("recordings", row.text(0), read_recording(row), row.text(14));
+}
+
 std::string read_text(const Statement& row) { return row.text(0); }
 
 /// `id` of the metadata, else the name of the file.
@@ -95,7 +99,8 @@ std::string called(const Recording& recording) {
 
 Status insert_blob(Connection& connection, const Blob& blob, UtcMicros now) {
   return connection.prepare(kInsertBlob)
-      .bind(blob.sha256, blob.bytes, blob.format, blob.compression, blob.rows, blob.columns_json, blob.notes_json, now)
+      .bind(blob.sha256, blob.bytes, blob.format, blob.compression, blob.rows, blob.columns_json, blob.notes_json, now,
+            seal_of(blob))
       .run();
 }
 
@@ -115,6 +120,17 @@ Result<DeviceUsage> read_usage(Statement& statement) {
   return one_row(
       statement, +[](const Statement& row) { return DeviceUsage{row.integer(0), row.integer(1), row.integer(2) != 0}; },
       Error{ErrorCode::Internal, "The store counts nothing.", {}});
+}
+
+Error absent(std::string_view id) {
+  return {ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".", {{"recording", std::string(id)}}};
+}
+
+/// The recording as its row has it: whatever happened to that, it can be removed.
+Result<Recording> damaged_or_not(Connection& connection, std::string_view id) {
+  Statement statement = connection.prepare(kById);
+  statement.bind(id);
+  return one_row(statement, read_recording, absent(id));
 }
 
 tl::unexpected<Error> stale(const Recording& found) {
@@ -137,7 +153,7 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
   }
   Statement statement = connection.prepare(kByDeviceAndBlob);
   statement.bind(recording.device_id, blob.sha256);
-  Result<std::vector<Recording>> existing = all_rows(statement, read_recording);  // one at most
+  Result<std::vector<Recording>> existing = all_rows(statement, read_sound_recording);  // one at most
   if (!existing) {
     return fail(existing.error());
   }
@@ -161,13 +177,15 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
   }
   made.blob_sha256 = blob.sha256;
   made.revision = 1;
+  made.tags_revision = 0;
+  made.name = called(made);
   made.created_at = now;
   made.updated_at = now;
-  Status inserted =
-      connection.prepare(kInsert)
-          .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json, made.condition,
-                made.quality_json, made.created_at, made.updated_at, made.tags_json, made.file_name, called(made))
-          .run();
+  Status inserted = connection.prepare(kInsert)
+                        .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json,
+                              made.condition, made.quality_json, made.created_at, made.updated_at, made.tags_json,
+                              made.file_name, made.name, seal_of(made))
+                        .run();
   if (!inserted) {
     return fail(inserted.error());
   }
@@ -196,9 +214,7 @@ Result<std::int64_t> blob_bytes(Connection& connection) {
 Result<Recording> recording(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
-  return one_row(
-      statement, read_recording,
-      {ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".", {{"recording", std::string(id)}}});
+  return one_row(statement, read_sound_recording, absent(id));
 }
 
 Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {
@@ -213,7 +229,7 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   if (filter.has_result) {
     query.where((*filter.has_result ? "" : "NOT ") + std::string(kHasResult));
   }
-  return query.visible(page, "device_id").read_page(connection, page, read_recording);
+  return query.visible(page, "device_id").read_page(connection, page, read_sound_recording);
 }
 
 Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,
@@ -233,11 +249,12 @@ Result<Recording> revise_recording(Connection& connection, const Recording& chan
   revised.condition = changed.condition;
   revised.quality_json = changed.quality_json;
   revised.revision += other_meaning ? 1 : 0;
+  revised.name = called(revised);
   revised.updated_at = now;
   Status updated =
       connection.prepare(kUpdate)
           .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json, revised.revision,
-                revised.updated_at, revised.tags_json, revised.tags_revision, called(revised))
+                revised.updated_at, revised.tags_json, revised.tags_revision, revised.name, seal_of(revised))
           .run();
   if (updated && other_meaning) {
     const auto axes = axes_of_recording(connection, revised.id);
@@ -247,11 +264,11 @@ Result<Recording> revise_recording(Connection& connection, const Recording& chan
 }
 
 Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision, UtcMicros now) {
-  const Result<Recording> found = recording(connection, id);
+  const Result<Recording> found = damaged_or_not(connection, id);
   if (!found) {
     return fail(found.error());
   }
-  if (found->revision != expected_revision) {
+  if (found->revision != expected_revision && expected_revision != Store::kAnyRevision) {
     return stale(*found);
   }
   Statement statement = connection.prepare(kLiveJob);

@@ -4,17 +4,22 @@ namespace driftlab::server::tables {
 namespace {
 
 constexpr std::string_view kSelectAnchors =
-    "SELECT id, device_id, label, reason, created_at, settings_json FROM anchors";
+    "SELECT id, device_id, label, reason, created_at, settings_json, seal FROM anchors";
 constexpr std::string_view kInsertAnchor =
-    "INSERT INTO anchors (id, device_id, label, reason, created_at, settings_json) VALUES (?, ?, ?, ?, ?, ?)";
-constexpr std::string_view kInsertArtefact = "INSERT INTO artefacts (job_id, name, content) VALUES (?, ?, ?)";
-constexpr std::string_view kArtefact = "SELECT content FROM artefacts WHERE job_id = ? AND name = ?";
+    "INSERT INTO anchors (id, device_id, label, reason, created_at, settings_json, seal) VALUES (?, ?, ?, ?, ?, ?, ?)";
+constexpr std::string_view kInsertArtefact = "INSERT INTO artefacts (job_id, name, content, seal) VALUES (?, ?, ?, ?)";
+constexpr std::string_view kArtefact =
+    "SELECT job_id, name, content, seal FROM artefacts WHERE job_id = ? AND name = ?";
 
-Anchor read_anchor(const Statement& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4), row.text(5)};
+Result<Anchor> read_anchor(const Statement& row) {
+  return sound_row("anchors", row.text(0),
+                   Anchor{row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4), row.text(5)},
+                   row.text(6));
 }
 
-std::string read_content(const Statement& row) { return row.text(0); }
+Result<std::string> read_content(const Statement& row) {
+  return sound_text("artefacts", {row.text(0), row.text(1), row.text(2)}, row.text(3));
+}
 
 }  // namespace
 
@@ -22,9 +27,10 @@ Result<Anchor> add_anchor(Connection& connection, const Anchor& anchor, UtcMicro
   Anchor made = anchor;
   made.id = make_id("anc", now);
   made.created_at = now;
-  Status inserted = connection.prepare(kInsertAnchor)
-                        .bind(made.id, made.device_id, made.label, made.reason, made.created_at, made.settings_json)
-                        .run();
+  Status inserted =
+      connection.prepare(kInsertAnchor)
+          .bind(made.id, made.device_id, made.label, made.reason, made.created_at, made.settings_json, seal_of(made))
+          .run();
   return inserted ? Result<Anchor>(std::move(made)) : fail(inserted.error());
 }
 
@@ -37,7 +43,10 @@ Result<std::vector<Anchor>> anchors(Connection& connection, const std::optional<
 
 Status insert_artefacts(Connection& connection, std::string_view job_id, const JobResults& results) {
   for (const Artefact& artefact : results.artefacts) {
-    if (Status inserted = connection.prepare(kInsertArtefact).bind(job_id, artefact.name, artefact.content).run();
+    if (Status inserted =
+            connection.prepare(kInsertArtefact)
+                .bind(job_id, artefact.name, artefact.content, seal_of_texts({job_id, artefact.name, artefact.content}))
+                .run();
         !inserted) {
       return inserted;
     }

@@ -62,7 +62,11 @@ constexpr std::string_view kRemoveCalibration = "DELETE FROM calibrations WHERE 
 constexpr std::string_view kRemoveModel = "DELETE FROM models WHERE id = ?";
 /// With its job, whose result it is: the same may then be asked for again.
 constexpr std::string_view kRemoveInvestigation = "DELETE FROM jobs WHERE id = ?";
+constexpr std::string_view kJobOfInvestigation = "SELECT job_id FROM investigations WHERE id = ?";
 constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
+
+/// What is damaged can be removed: the row is there.
+bool is_damaged(const Error& error) { return !damaged_row_of(error).empty(); }
 
 using Named = std::pair<std::string, std::int64_t>;
 
@@ -127,7 +131,7 @@ Status remove_device(Connection& connection, std::string_view id, std::int64_t e
 }
 
 Status remove_study(Connection& connection, std::string_view id) {
-  if (const auto found = study(connection, id); !found) {
+  if (const auto found = study(connection, id); !found && !is_damaged(found.error())) {
     return fail(found.error());
   }
   if (Status unused = require_free(connection, kOfStudy, "study", id); !unused) {
@@ -137,7 +141,7 @@ Status remove_study(Connection& connection, std::string_view id) {
 }
 
 Status remove_calibration(Connection& connection, std::string_view id) {
-  if (const auto found = calibration(connection, id); !found) {
+  if (const auto found = calibration(connection, id); !found && !is_damaged(found.error())) {
     return fail(found.error());
   }
   if (Status unused = require_free(connection, kOfCalibration, "calibration", id); !unused) {
@@ -147,7 +151,7 @@ Status remove_calibration(Connection& connection, std::string_view id) {
 }
 
 Status remove_model(Connection& connection, std::string_view id) {
-  if (const auto found = model(connection, id); !found) {
+  if (const auto found = model(connection, id); !found && !is_damaged(found.error())) {
     return fail(found.error());
   }
   if (Status unused = require_free(connection, kOfModel, "model", id); !unused) {
@@ -157,11 +161,13 @@ Status remove_model(Connection& connection, std::string_view id) {
 }
 
 Status remove_investigation(Connection& connection, std::string_view id) {
-  const auto found = investigation(connection, id);
-  if (!found) {
-    return fail(found.error());
-  }
-  return run_all(connection, {kRemoveInvestigation, kRemoveOwners}, found->job_id);
+  Statement statement = connection.prepare(kJobOfInvestigation);
+  statement.bind(id);
+  const auto job = one_row(statement, +[](const Statement& row) { return row.text(0); },
+                           {ErrorCode::NotFound,
+                            "There is no investigation \"" + std::string(id) + "\".",
+                            {{"investigation", std::string(id)}}});
+  return job ? run_all(connection, {kRemoveInvestigation, kRemoveOwners}, *job) : fail(job.error());
 }
 
 }  // namespace driftlab::server::tables

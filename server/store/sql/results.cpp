@@ -4,22 +4,22 @@ namespace driftlab::server::tables {
 namespace {
 
 constexpr std::string_view kInsertDocument =
-    "INSERT INTO job_results (job_id, document_json, created_at) VALUES (?, ?, ?)";
+    "INSERT INTO job_results (job_id, document_json, created_at, seal) VALUES (?, ?, ?, ?)";
 constexpr std::string_view kInsertChannel =
     "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
-    "condition, document_json, settings_json, created_at, glance_json, glance_level) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
-    "?, "
-    "?, ?, ?, ?, ?)";
+    "condition, document_json, settings_json, created_at, glance_json, glance_level, seal) VALUES (?, ?, ?, ?, "
+    "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kInsertFit =
     "INSERT INTO fits (id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
-    "axis, condition, model, rank, document_json, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-constexpr std::string_view kDocument = "SELECT document_json FROM job_results WHERE job_id = ?";
+    "axis, condition, model, rank, document_json, created_at, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+    "?)";
+constexpr std::string_view kDocument = "SELECT job_id, document_json, seal FROM job_results WHERE job_id = ?";
 constexpr std::string_view kSelectFit =
     "SELECT id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
-    "condition, model, rank, document_json, created_at FROM fits";
+    "condition, model, rank, document_json, created_at, seal FROM fits";
 constexpr std::string_view kFitById =
     "SELECT id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
-    "condition, model, rank, document_json, created_at FROM fits WHERE id = ?";
+    "condition, model, rank, document_json, created_at, seal FROM fits WHERE id = ?";
 /// Of the latest result of its recording and channel.
 constexpr std::string_view kFitIsLatest =
     "NOT EXISTS (SELECT 1 FROM channel_results AS mine JOIN channel_results AS later "
@@ -35,12 +35,17 @@ constexpr std::string_view kFitIsLatest =
   "ORDER BY r.condition, recording.blob_sha256, r.channel"
 constexpr std::string_view kLatestChannels =
     "SELECT r.id, r.job_id, r.device_id, r.recording_id, r.recording_revision, r.channel, r.quantity, r.axis, "
-    "r.condition, r.document_json, r.settings_json, r.created_at" DRIFTLAB_LATEST_RESULTS;
+    "r.condition, r.document_json, r.settings_json, r.created_at, r.glance_json, r.glance_level, "
+    "r.seal" DRIFTLAB_LATEST_RESULTS;
 constexpr std::string_view kLatestIds = "SELECT r.id" DRIFTLAB_LATEST_RESULTS;
 
 std::string read_text(const Statement& row) { return row.text(0); }
 
-Fit read_fit(const Statement& row) {
+Result<std::string> read_document(const Statement& row) {
+  return sound_text("job_results", {row.text(0), row.text(1)}, row.text(2));
+}
+
+Result<Fit> read_fit(const Statement& row) {
   Fit fit;
   fit.id = row.text(0);
   fit.channel_result_id = row.text(1);
@@ -56,10 +61,10 @@ Fit read_fit(const Statement& row) {
   fit.rank = static_cast<int>(row.integer(11));
   fit.document_json = row.text(12);
   fit.created_at = row.integer(13);
-  return fit;
+  return sound_row("fits", row.text(0), std::move(fit), row.text(14));
 }
 
-ChannelResult read_channel(const Statement& row) {
+Result<ChannelResult> read_channel(const Statement& row) {
   ChannelResult channel;
   channel.id = row.text(0);
   channel.job_id = row.text(1);
@@ -73,29 +78,35 @@ ChannelResult read_channel(const Statement& row) {
   channel.document_json = row.text(9);
   channel.settings_json = row.text(10);
   channel.created_at = row.integer(11);
-  return channel;
+  channel.glance.json = row.text(12);
+  channel.glance.level = static_cast<int>(row.integer(13));
+  return sound_row("channel_results", row.text(0), std::move(channel), row.text(14));
 }
 
-Status insert_channel(Connection& connection, std::string_view job_id, const ChannelResult& channel, UtcMicros now) {
+Status insert_channel(Connection& connection, std::string_view job_id, ChannelResult channel, UtcMicros now) {
+  channel.job_id = job_id;
   return connection.prepare(kInsertChannel)
       .bind(channel.id, job_id, channel.device_id, channel.recording_id, channel.recording_revision, channel.channel,
             channel.quantity, channel.axis, channel.condition, channel.document_json, channel.settings_json, now,
-            channel.glance.json, channel.glance.level)
+            channel.glance.json, channel.glance.level, seal_of(channel))
       .run();
 }
 
-Status insert_fit(Connection& connection, std::string_view job_id, const Fit& fit, UtcMicros now) {
+Status insert_fit(Connection& connection, std::string_view job_id, Fit fit, UtcMicros now) {
+  fit.id = fit.id.empty() ? make_id("fit", now) : fit.id;
+  fit.job_id = job_id;
   return connection.prepare(kInsertFit)
-      .bind(fit.id.empty() ? make_id("fit", now) : fit.id, fit.channel_result_id, job_id, fit.device_id,
-            fit.recording_id, fit.recording_revision, fit.channel, fit.quantity, fit.axis, fit.condition, fit.model,
-            fit.rank, fit.document_json, now)
+      .bind(fit.id, fit.channel_result_id, job_id, fit.device_id, fit.recording_id, fit.recording_revision, fit.channel,
+            fit.quantity, fit.axis, fit.condition, fit.model, fit.rank, fit.document_json, now, seal_of(fit))
       .run();
 }
 
 }  // namespace
 
 Status insert_results(Connection& connection, std::string_view job_id, const JobResults& results, UtcMicros now) {
-  Status inserted = connection.prepare(kInsertDocument).bind(job_id, results.document_json, now).run();
+  Status inserted = connection.prepare(kInsertDocument)
+                        .bind(job_id, results.document_json, now, seal_of_texts({job_id, results.document_json}))
+                        .run();
   for (auto channel = results.channels.begin(); inserted && channel != results.channels.end(); ++channel) {
     inserted = insert_channel(connection, job_id, *channel, now);
   }
@@ -115,7 +126,7 @@ Result<std::string> result_document(Connection& connection, std::string_view job
   Statement statement = connection.prepare(kDocument);
   statement.bind(job_id);
   return one_row(
-      statement, read_text,
+      statement, read_document,
       {ErrorCode::NotFound, "Job \"" + std::string(job_id) + "\" has no result.", {{"job", std::string(job_id)}}});
 }
 

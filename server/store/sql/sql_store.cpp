@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace driftlab::server {
 namespace {
 
@@ -213,7 +215,7 @@ Result<EnqueuedJob> SqlStore::enqueue(const NewJob& job) {
 }
 
 Result<Job> SqlStore::job(std::string_view id) {
-  return database_->read([&](Connection& c) { return tables::job(c, id); });
+  return database_->read([&](Connection& c) { return tables::sound_job(c, id); });
 }
 
 Result<std::vector<Job>> SqlStore::jobs(const JobFilter& filter, const Page& page) {
@@ -316,6 +318,44 @@ Result<int> SqlStore::keep_missing_glances(const GlanceOf& glance_of) {
     }
     kept += *some;
   }
+}
+
+Result<int> SqlStore::seal_unsealed_rows() {
+  constexpr int kRowsAtOnce = 100;
+  int sealed = 0;
+  for (const SealedTable& table : sealed_tables()) {
+    int some = kRowsAtOnce;
+    while (some > 0) {
+      const Result<int> done =
+          database_->write(WriteKind::Serial, [&](Connection& c) { return seal_rows(c, table, kRowsAtOnce); });
+      if (!done) {
+        return done;
+      }
+      some = *done;
+      sealed += some;
+    }
+  }
+  return sealed;
+}
+
+Status SqlStore::read_back_rows(const ReadingPace& pace, const std::function<void(const std::string& row)>& damaged) {
+  constexpr int kRowsAtOnce = 20;  // whole documents, which may be large
+  for (const SealedTable& table : sealed_tables()) {
+    std::vector<std::string> after;
+    do {
+      const Result<ReadBack> some =
+          database_->read([&](Connection& c) { return read_back(c, table, after, kRowsAtOnce); });
+      if (!some) {
+        return fail(some.error());
+      }
+      std::ranges::for_each(some->damaged, damaged);
+      after = some->last;
+      if (!pace(static_cast<std::size_t>(some->bytes))) {
+        return fail(ErrorCode::Cancelled, "The check was stopped.");
+      }
+    } while (!after.empty());
+  }
+  return {};
 }
 
 Result<int> SqlStore::queue_missing_pools() {

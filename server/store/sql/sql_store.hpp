@@ -1,6 +1,7 @@
 #pragma once
 /// The store over the tables of this folder, for any engine that runs their transactions.
 #include "server/store/access_store.hpp"
+#include "server/store/checksums.hpp"
 #include "server/store/sql/database.hpp"
 #include "server/store/sql/sql_access.hpp"
 #include "server/store/sql/sql_webhooks.hpp"
@@ -8,6 +9,7 @@
 #include "server/store/webhook_store.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +41,15 @@ class SqlStore : public Store {
 
   /// For the start of a daemon: what results of an earlier release say at a glance. How many lacked it.
   [[nodiscard]] Result<int> keep_missing_glances(const GlanceOf& glance_of);
+
+  /// Likewise: seals rows of an earlier release (server/store/sql/seals.hpp). How many lacked it.
+  [[nodiscard]] Result<int> seal_unsealed_rows();
+  /// Reads every sealed row back and tells of those whose seal does not fit, as `table/key`. `pace` waits between a few
+  /// rows and the next. Errors: those of the database; Cancelled.
+  [[nodiscard]] Status read_back_rows(const ReadingPace& pace,
+                                      const std::function<void(const std::string& row)>& damaged);
+  /// `listener` is told of every row that a read finds damaged. To be called before others use the store.
+  void tell_damage_to(DamageListener listener) { database_->tell_damage_to(std::move(listener)); }
 
   [[nodiscard]] Status ping() override;
 

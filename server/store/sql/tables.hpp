@@ -5,6 +5,7 @@
 /// of the methods of the same name in server/store/store.hpp.
 #include "core/signal/result.hpp"
 #include "server/store/sql/connection.hpp"
+#include "server/store/sql/seals.hpp"
 #include "server/store/store.hpp"
 
 #include <cstdint>
@@ -16,21 +17,38 @@
 
 namespace driftlab::server::tables {
 
-// ---- helpers for the row readers of each file
+// ---- helpers for the row readers of each file: one returns the row, or a Result where the row has a seal
+
+template <class Read>
+struct RowRead {
+  using Row = Read;
+};
+template <class Sound>
+struct RowRead<Result<Sound>> {
+  using Row = Sound;
+};
+template <class Read>
+using RowOf = typename RowRead<Read>::Row;
+
+/// The present row as `read` finds it.
+template <class Read>
+[[nodiscard]] Result<RowOf<Read>> present_row(const Statement& statement, Read (*read)(const Statement&)) {
+  return read(statement);
+}
 
 /// The first row of a query, read by `read`; nothing without rows.
-template <class Row>
-[[nodiscard]] Result<std::optional<Row>> first_row(Statement& statement, Row (*read)(const Statement&)) {
+template <class Read>
+[[nodiscard]] Result<std::optional<RowOf<Read>>> first_row(Statement& statement, Read (*read)(const Statement&)) {
   const Result<bool> row = statement.step();
-  if (!row) {
-    return fail(row.error());
+  if (!row || !*row) {
+    return row ? Result<std::optional<RowOf<Read>>>(std::nullopt) : fail(row.error());
   }
-  return *row ? std::optional<Row>(read(statement)) : std::nullopt;
+  return present_row(statement, read).map([](RowOf<Read> found) { return std::optional(std::move(found)); });
 }
 
 /// The first row of a query; `absent` where there is none.
-template <class Row>
-[[nodiscard]] Result<Row> one_row(Statement& statement, Row (*read)(const Statement&), Error absent) {
+template <class Read>
+[[nodiscard]] Result<RowOf<Read>> one_row(Statement& statement, Read (*read)(const Statement&), Error absent) {
   const Result<bool> row = statement.step();
   if (!row) {
     return fail(row.error());
@@ -38,13 +56,13 @@ template <class Row>
   if (!*row) {
     return fail(std::move(absent));
   }
-  return read(statement);
+  return present_row(statement, read);
 }
 
 /// Every row of a query.
-template <class Row>
-[[nodiscard]] Result<std::vector<Row>> all_rows(Statement& statement, Row (*read)(const Statement&)) {
-  std::vector<Row> rows;
+template <class Read>
+[[nodiscard]] Result<std::vector<RowOf<Read>>> all_rows(Statement& statement, Read (*read)(const Statement&)) {
+  std::vector<RowOf<Read>> rows;
   while (true) {
     const Result<bool> row = statement.step();
     if (!row) {
@@ -53,7 +71,11 @@ template <class Row>
     if (!*row) {
       return rows;
     }
-    rows.push_back(read(statement));
+    Result<RowOf<Read>> found = present_row(statement, read);
+    if (!found) {
+      return fail(std::move(found.error()));
+    }
+    rows.push_back(std::move(*found));
   }
 }
 
@@ -121,9 +143,9 @@ class FilteredQuery {
   }
   /// Ends the query as a keyset page over `id` and reads it. Errors: Internal where the page is for a caller limited to
   /// devices and the query does not say what such a caller sees.
-  template <class Row>
-  [[nodiscard]] Result<std::vector<Row>> read_page(Connection& connection, const Page& page,
-                                                   Row (*read)(const Statement&)) {
+  template <class Read>
+  [[nodiscard]] Result<std::vector<RowOf<Read>>> read_page(Connection& connection, const Page& page,
+                                                           Read (*read)(const Statement&)) {
     if (page.visible && !guarded_) {
       return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
     }
@@ -194,6 +216,8 @@ class FilteredQuery {
 // ---- jobs: asking and looking
 [[nodiscard]] Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now);
 [[nodiscard]] Result<Job> job(Connection& connection, std::string_view id);
+/// The same, if its request is what was written. Error: damaged_row.
+[[nodiscard]] Result<Job> sound_job(Connection& connection, std::string_view id);
 [[nodiscard]] Result<int> forget_ended_jobs(Connection& connection, UtcMicros before);
 [[nodiscard]] Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page);
 [[nodiscard]] Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id,
@@ -240,8 +264,8 @@ class FilteredQuery {
   "id, job_id, (SELECT kind FROM jobs WHERE jobs.id = verdicts.job_id), coalesce(device_id, ''), "                    \
   "coalesce(recording_id, ''), channel, level, verdict, coalesce((SELECT investigations.id FROM investigations "      \
   "WHERE investigations.job_id = verdicts.job_id), ''), coalesce((SELECT devices.name FROM devices WHERE devices.id " \
-  "= verdicts.device_id), ''), created_at"
-[[nodiscard]] ResultVerdict read_verdict(const Statement& row);
+  "= verdicts.device_id), ''), created_at, seal"
+[[nodiscard]] Result<ResultVerdict> read_verdict(const Statement& row);
 /// After the job's result document. What was said before of the recordings that they speak of is forgotten.
 [[nodiscard]] Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results,
                                      UtcMicros now);

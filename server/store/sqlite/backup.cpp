@@ -4,6 +4,7 @@
 #include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
+#include "server/store/sql/seals.hpp"
 #include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/migrations.hpp"
 
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDatabase = "driftlab.db";
 constexpr const char* kManifest = "manifest.json";
+constexpr std::int64_t kFirstSealedSchema = 16;
 
 fs::path bytes_below(const fs::path& root, const std::string& sha256) {
   return root / "blobs" / sha256.substr(0, 2) / sha256;
@@ -67,6 +69,32 @@ Status check_database(SqliteConnection& connection, std::vector<std::string>& fa
   }
   if (const std::optional<std::string>& orphan = *found) {
     faults.push_back("A row of the table " + *orphan + " refers to one that is not there.");
+  }
+  return {};
+}
+
+/// Compares every row with its seal; a database of an earlier release has none.
+Status check_rows(SqliteConnection& connection, const std::stop_token& stop, StoreReport& report) {
+  constexpr int kRowsAtOnce = 100;
+  const auto schema = connection.query_integer("PRAGMA user_version");
+  if (!schema || schema->value_or(0) < kFirstSealedSchema) {
+    return schema ? Status{} : fail(schema.error());
+  }
+  for (const SealedTable& table : sealed_tables()) {
+    std::vector<std::string> after;
+    do {
+      if (stop.stop_requested()) {
+        return fail(ErrorCode::Cancelled, "Reading back what is stored was stopped.");
+      }
+      const auto some = read_back(connection, table, after, kRowsAtOnce);
+      if (!some) {
+        return fail(some.error());
+      }
+      for (const std::string& row : some->damaged) {
+        report.faults.push_back("The row " + row + " of the database is damaged.");
+      }
+      after = some->last;
+    } while (!after.empty());
   }
   return {};
 }
@@ -214,7 +242,11 @@ Status copy_what_is_named(const fs::path& from, const fs::path& part, const std:
   if (!copy) {
     return fail(copy.error());
   }
-  if (Status whole = check_database(**copy, report.faults); !whole) {
+  Status whole = check_database(**copy, report.faults);
+  if (whole) {
+    whole = check_rows(**copy, stop, report);
+  }
+  if (!whole) {
     return whole;
   }
   const auto hashes = blobs_of(**copy);
@@ -233,6 +265,9 @@ Result<StoreReport> check_data(const fs::path& data) {
   }
   StoreReport report;
   Status checked = check_database(**connection, report.faults);
+  if (checked) {
+    checked = check_rows(**connection, {}, report);
+  }
   const auto hashes = checked ? blobs_of(**connection) : Result<std::vector<std::string>>(fail(checked.error()));
   if (!hashes) {
     return fail(hashes.error());

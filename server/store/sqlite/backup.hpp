@@ -19,8 +19,9 @@
 
 namespace driftlab::server {
 
-/// Reads everything: the database (integrity and foreign keys), the bytes of each blob against its name, its columns
-/// against their checksum, and whether anything is missing. Changes nothing. Errors: NotFound (no data directory), Io.
+/// Reads everything: the database (integrity, foreign keys, the seals of rows), the bytes of each blob against its
+/// name, its columns against their checksum, and whether anything is missing. Changes nothing. Errors: NotFound (no
+/// data directory), Io.
 [[nodiscard]] Result<StoreReport> check_data(const std::filesystem::path& data);
 
 /// Errors: Conflict (the target exists), NotFound, Io, DiskFull; Cancelled, once `stop` asks: nothing stays of it. A

@@ -15,11 +15,12 @@ namespace driftlab::server {
 class SqliteDatabase final : public Database {
  public:
   SqliteDatabase(FileHandle lock, const Clock& clock, std::filesystem::path file,
-                 std::unique_ptr<SqliteConnection> writer, std::unique_ptr<ReaderPool> readers)
+                 std::unique_ptr<SqliteConnection> writer, std::unique_ptr<CommitLog> commits,
+                 std::unique_ptr<ReaderPool> readers)
       : lock_(std::move(lock)),
         clock_(clock),
         file_(std::move(file)),
-        writer_(std::move(writer)),
+        writer_(std::move(writer), std::move(commits)),
         readers_(std::move(readers)) {}
 
   [[nodiscard]] UtcMicros now(const Connection& /*connection*/) const override { return clock_.now(); }

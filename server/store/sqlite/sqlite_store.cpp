@@ -10,6 +10,8 @@
 namespace driftlab::server {
 namespace {
 
+constexpr int kFirstCountedSchema = 17;  // migrations/sqlite/0017_commits_are_counted.sql
+
 /// 3.7.0 to 3.51.2: https://sqlite.org/wal.html
 bool has_wal_reset_bug(int version_number) { return version_number >= 3'007'000 && version_number < 3'051'003; }
 
@@ -71,9 +73,18 @@ Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::pa
   if (!readers) {
     return fail(readers.error());
   }
+  std::unique_ptr<CommitLog> commits;
+  if (migrated->to >= kFirstCountedSchema) {
+    auto opened = CommitLog::open(facts.database, **writer);
+    if (!opened) {
+      return fail(opened.error());
+    }
+    commits = std::move(*opened);
+    facts.lost_commits = commits->lost();
+  }
   const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
   auto database = std::make_unique<SqliteDatabase>(std::move(*lock), clock, facts.database, std::move(*writer),
-                                                   std::move(*readers));
+                                                   std::move(commits), std::move(*readers));
   return std::make_unique<SqliteStore>(std::move(database), std::move(facts), seed, std::move(options.audited));
 }
 

@@ -2,6 +2,7 @@
 /// The store on SQLite: one file, one writing thread, a few read-only readers.
 ///
 ///   <directory>/driftlab.db (-wal, -shm)   the database
+///   <directory>/driftlab.commits           how many transactions were acknowledged
 ///   <directory>/store.lock                 held by the daemon that has it open
 ///   <directory>/backups/                   a copy from before each migration
 ///
@@ -43,6 +44,7 @@ struct SqliteFacts {
   int schema = 0;
   std::filesystem::path backup;  ///< made before migrating; empty where none was needed
   std::filesystem::path database;
+  std::int64_t lost_commits = 0;  ///< transactions that were acknowledged and are not there (commit_log.hpp)
 };
 
 class SqliteStore final : public SqlStore {

@@ -22,7 +22,8 @@ Status guarded(const std::function<Status(SqliteConnection&)>& work, SqliteConne
 
 }  // namespace
 
-Writer::Writer(std::unique_ptr<SqliteConnection> connection) : connection_(std::move(connection)) {
+Writer::Writer(std::unique_ptr<SqliteConnection> connection, std::unique_ptr<CommitLog> commits)
+    : connection_(std::move(connection)), commits_(std::move(commits)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -33,6 +34,28 @@ Writer::~Writer() {
   }
   work_queued_.notify_all();
   thread_.join();
+  if (commits_) {
+    (void)commits_->require_whole_log(*connection_);
+  }
+}
+
+Status Writer::begin() {
+  const Status whole = commits_ ? commits_->require_whole_log(*connection_) : Status{};
+  return whole ? connection_->prepare("BEGIN IMMEDIATE").run() : whole;
+}
+
+Status Writer::commit(std::int64_t changes_before) {
+  Status done;
+  if (commits_ && connection_->total_changes() != changes_before) {
+    done = commits_->count(*connection_);
+  }
+  if (done) {
+    done = connection_->prepare("COMMIT").run();
+  }
+  if (done && commits_) {
+    commits_->note_committed();
+  }
+  return done;
 }
 
 Status Writer::submit(std::function<Status(SqliteConnection&)> work) {
@@ -99,7 +122,8 @@ Status Writer::run_in_savepoint(Task& task) {
 std::vector<Writer::Task*> Writer::run_batch(Task* first) {
   std::vector<Task*> batch = {first};
   const auto end = std::chrono::steady_clock::now() + kBatchTime;
-  Status status = connection_->prepare("BEGIN IMMEDIATE").run();
+  const std::int64_t before = connection_->total_changes();
+  Status status = begin();
   if (status) {
     status = run_in_savepoint(*first);
   }
@@ -112,7 +136,7 @@ std::vector<Writer::Task*> Writer::run_batch(Task* first) {
     status = run_in_savepoint(*task);
   }
   if (status) {
-    status = connection_->prepare("COMMIT").run();
+    status = commit(before);
   }
   if (status) {
     return batch;
@@ -131,13 +155,14 @@ std::vector<Writer::Task*> Writer::run_batch(Task* first) {
 }
 
 void Writer::run_alone(Task& task) {
-  Status status = connection_->prepare("BEGIN IMMEDIATE").run();
+  const std::int64_t before = connection_->total_changes();
+  Status status = begin();
   if (status) {
     task.outcome = guarded(task.work, *connection_);
     if (!task.outcome) {
       status = fail(task.outcome.error());
     } else {
-      status = connection_->prepare("COMMIT").run();  // refused where the work ended the transaction
+      status = commit(before);  // refused where the work ended the transaction
     }
   }
   if (!status) {

@@ -7,6 +7,7 @@
 /// fails (a full disk), each piece is tried once more alone, so that a large one does not fail the small ones. A piece
 /// of work may therefore run twice, but what it did the first time is undone.
 #include "core/signal/result.hpp"
+#include "server/store/sqlite/commit_log.hpp"
 #include "server/store/sqlite/connection.hpp"
 
 #include <atomic>
@@ -24,7 +25,8 @@ namespace driftlab::server {
 
 class Writer {
  public:
-  explicit Writer(std::unique_ptr<SqliteConnection> connection);
+  /// `commits` counts what is committed; nullptr: nobody does.
+  explicit Writer(std::unique_ptr<SqliteConnection> connection, std::unique_ptr<CommitLog> commits = nullptr);
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   /// Finishes what is queued, then closes the connection.
@@ -65,9 +67,12 @@ class Writer {
   [[nodiscard]] std::vector<Task*> run_batch(Task* first);
   [[nodiscard]] Status run_in_savepoint(Task& task);
   void run_alone(Task& task);
+  [[nodiscard]] Status begin();
+  [[nodiscard]] Status commit(std::int64_t changes_before);
   void announce(const std::vector<Task*>& tasks);
 
   std::unique_ptr<SqliteConnection> connection_;
+  std::unique_ptr<CommitLog> commits_;
   std::mutex mutex_;
   std::condition_variable work_queued_;
   std::condition_variable work_done_;

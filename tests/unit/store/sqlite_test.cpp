@@ -56,6 +56,26 @@ TEST(SqliteStore, ASecondDaemonIsRefused) {
   EXPECT_TRUE(open_in(directory.path(), clock)) << "the lock goes with its holder";
 }
 
+TEST(SqliteStore, ADatabaseThatIsOlderThanWhatWasAcknowledgedIsKnownForIt) {
+  const TemporaryDirectory directory;
+  const FakeClock clock;
+  const std::filesystem::path file = directory.path() / "driftlab.db";
+  const auto with_device = [&](const std::string& name) {
+    const auto store = open_in(directory.path(), clock);
+    (void)add_device(**store, name);
+    return (*store)->facts().lost_commits;
+  };
+  EXPECT_EQ(with_device("first"), 0);
+  std::filesystem::copy_file(file, directory.path() / "older");
+  EXPECT_EQ(with_device("second"), 0);
+  EXPECT_EQ(with_device("third"), 0);
+  std::filesystem::rename(directory.path() / "older", file);
+  EXPECT_EQ(with_device("fourth"), 2) << "second and third";
+  EXPECT_EQ(with_device("fifth"), 0) << "it was said; numbers go on behind what is gone";
+  std::filesystem::remove(directory.path() / "driftlab.commits");
+  EXPECT_EQ(with_device("sixth"), 0) << "a restored copy has no such file";
+}
+
 TEST(SqliteStore, ConnectionsHaveTheSettingsOfTheHouse) {
   const TemporaryDirectory directory;
   const FakeClock clock;
@@ -105,7 +125,7 @@ TEST(SqliteStore, ClosingEmptiesTheLog) {
     const auto store = open_in(directory.path(), clock);
     add_device(**store);
   }
-  EXPECT_THAT(files_below(directory.path()), testing::ElementsAre("driftlab.db"));
+  EXPECT_THAT(files_below(directory.path()), testing::ElementsAre("driftlab.commits", "driftlab.db"));
 }
 
 TEST(SqliteStore, ADamagedFileIsRefusedAndLeftAlone) {
