@@ -5,7 +5,7 @@
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
-#include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -137,7 +137,7 @@ Figure spectrogram(const Json& series, const std::string& title) {
   plot.cells = {numbers_of(picture.at("time_s")), numbers_of(picture.at("f_hz")), {}};
   for (const Json& row : picture.at("log10_ratio")) {
     for (const std::optional<double> value : values_of(row)) {
-      plot.cells.values.push_back(value.value_or(std::nan("")));
+      plot.cells.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
     }
   }
   for (const auto& [name, colour] :
