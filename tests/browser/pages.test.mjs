@@ -288,12 +288,14 @@ test('a device’s page says whether one structure serves its conditions, and by
   assert.equal(await panel.getByText('serves all').count(), 1);
   assert.equal(await panel.getByRole('cell', {name: 'best', exact: true}).count(), 1);
   // The table can be of any of them, and its address says so.
+  const gaussMarkov = page.locator('.pt thead th', {hasText: 'Gauss-Markov'});
+  await gaussMarkov.first().waitFor();
   await page.getByLabel('model').selectOption('WN');
   await page.waitForURL(/model=WN/);
-  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor({state: 'detached'});
+  await gaussMarkov.first().waitFor({state: 'detached'});
   assert.equal(await page.getByLabel('model').inputValue(), 'WN');
   await page.goBack();
-  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor();
+  await gaussMarkov.first().waitFor();
   assert.deepEqual(page.loud, []);
   await page.context().close();
 });
