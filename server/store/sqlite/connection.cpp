@@ -100,7 +100,9 @@ Status SqliteConnection::configure(Access access) {
   (void)sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0, nullptr);
   (void)sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   (void)sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
-  const char* common = "PRAGMA mmap_size=0; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;";
+  // Pages that were read stay in the system's cache anyway; a cache of each connection beside it, 2 MiB unless told
+  // otherwise, only makes the process grow with the database.
+  const char* common = "PRAGMA mmap_size=0; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON; PRAGMA cache_size=-512;";
   if (Status done = execute(common); !done || access == Access::ReadOnly) {
     return done;
   }
