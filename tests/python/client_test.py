@@ -245,6 +245,7 @@ class Everything(ClientTest):
         self.assertIn("verdict", client.characterisation(first)["channels"][0]["summary"])
         self.assertEqual(len(client.trace(first, client.recording(first)["file"]["columns"][0], points=10)["mean"]), 10)
         self.assertGreater(client.counts()["recordings"], 0)
+        self.assertGreater(client.workers()["workers"], 0)
         self.assertGreater(client.counts(since="2020-01-01T00:00:00Z")["jobs"]["succeeded_since"]["count"], 0)
         self.assertEqual(client.counts(include="attention")["attention"], list(client.attention())[:8])
         self.assertTrue(all(item["level"] in ("look", "wrong") for item in client.attention(device="all-07", since="2020-01-01T00:00:00Z")))

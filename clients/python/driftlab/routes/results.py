@@ -67,11 +67,11 @@ class ResultRoutes(Routes):
         return self._text("getParameterTable", media, None, query, wait_s)
 
     @operation("getStructure")
-    def structure(self, *recordings: str | tuple[str, str]) -> PooledSensorStructure:
+    def structure(self, *of: str | tuple[str, str]) -> PooledSensorStructure:
         """Whether two to eight recordings have one structure: ids, or ids with a channel, of which an id alone means the first."""
-        asked = [(one, "") if isinstance(one, str) else one for one in recordings]
-        of = ",".join(f"{id}:{quote(channel, safe='')}" if channel else id for id, channel in asked)
-        return cast(PooledSensorStructure, self._get("getStructure", None, {"of": of}))
+        asked = [(one, "") if isinstance(one, str) else one for one in of]
+        words = ",".join(f"{id}:{quote(channel, safe='')}" if channel else id for id, channel in asked)
+        return cast(PooledSensorStructure, self._get("getStructure", None, {"of": words}))
 
     @operation("getTrends")
     def trends(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
