@@ -47,7 +47,9 @@ std::string what_remains(const Report& report) {
   }
   std::vector<std::string> columns;
   for (const Unexplained& left : report.unexplained) {
-    columns.push_back(left.channel);
+    if (std::find(columns.begin(), columns.end(), left.channel) == columns.end()) {
+      columns.push_back(left.channel);
+    }
   }
   return with_count(report.failed_after, "check still fails", "checks still fail") + " (" + list_of(columns) + ")";
 }

@@ -78,7 +78,7 @@ export function Measured({found, one, names}: {found: Investigation; one: Series
   const changes = one.spectrogram;
   const picture = 'Spectrogram of the innovations';
   const picked = found.findings.find(finding => keyOf(finding, found.findings) === chosen);
-  return <div class="grid wide-side">
+  return <><div class="grid wide-side">
     <Figure name={`${found.id}-spectrum`} title="Spectrum" sub={<span>{columnOf(one.channel)}, mean of all recordings · <span style={{color: 'var(--robust)'}}>highest of each bin</span> · what chance reaches</span>} plots={spectra} source={source} curl={curl}
       describe={`Two-sided density of ${columnOf(one.channel)} in ${writeUnit(one.unit)}²/Hz over the baseline, before and after the findings; ${lines} lines found, ${left.length} left over.`}
       note={<><span style={{color: 'var(--model)'}}>▼</span> {lines === 0 ? 'no line was found' : `a line that was found${picked && frequencyOf(picked) !== null ? `; black: ${capital(causeName(picked.cause))}, ${hertz(frequencyOf(picked)!)}` : ''}`} · <span style={{color: 'var(--robust)'}}>▼</span> {left.length === 0 ? 'nothing is left above chance' : `left over, in no finding: ${left.slice(0, 6).map(hertz).join(', ')}${left.length > 6 ? ` and ${left.length - 6} more` : ''}`}</>} />
@@ -87,9 +87,10 @@ export function Measured({found, one, names}: {found: Investigation; one: Series
       sub={<span><span style={{color: 'var(--model)'}}>band: a right model, 95 %</span></span>} plots={innovations} source={`${source}, ${recording}`} curl={curl}
       describe={`Wavelet variance of the innovations of ${names.get(recording) ?? recording} over that of a right model by scale, before and after the findings: what the checks judge.`}
       note="One is right; vermilion lies outside the range of one scale alone. The checks judge all scales of all recordings together." />}
-    {changes && <Panel title={picture} sub={names.get(changes.recording) ?? changes.recording} tools={<Tools title={picture} curl={curl} onCsv={() => save(`${found.id}-spectrogram.csv`, 'text/csv', ratiosCsv(changes))} />}>
-      <Spectrogram spectrogram={changes} name={picture} />
-      <p class="note">What is left over the level of a right model, where that changes most; full colour is ten times more or less.</p>
-    </Panel>}
-  </div>;
+  </div>
+  {changes && <Panel title={picture} sub={names.get(changes.recording) ?? changes.recording} tools={<Tools title={picture} curl={curl} onCsv={() => save(`${found.id}-spectrogram.csv`, 'text/csv', ratiosCsv(changes))} />}>
+    <Spectrogram spectrogram={changes} name={picture} />
+    <p class="note">What is left over the level of a right model, where that changes most; full colour is ten times more or less.</p>
+  </Panel>}
+  </>;
 }
