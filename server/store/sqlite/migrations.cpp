@@ -117,6 +117,8 @@ Status copy_database(SqliteConnection& connection, const std::filesystem::path& 
   }
   if (!copied) {
     (void)remove_file(temporary);
+    temporary += "-journal";  // left where the copy was larger than the cache of pages
+    (void)remove_file(temporary);
   }
   return copied;
 }
