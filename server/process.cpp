@@ -5,7 +5,6 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <fstream>
@@ -25,7 +24,7 @@ void occupy_standard_descriptors() {
 void share_heaps() {
 #ifdef __GLIBC__
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  (void)::mallopt(M_ARENA_MAX, std::max(2, cores));  // NOLINT(concurrency-mt-unsafe): no other thread yet
+  (void)::mallopt(M_ARENA_MAX, cores > 2 ? cores : 2);  // NOLINT(concurrency-mt-unsafe): no other thread yet
 #endif
 }
 
