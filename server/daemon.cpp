@@ -74,6 +74,7 @@ struct Daemon::Parts {
         scrubber(*store, *blobs, states, decode_limits(budgets), budgets.scrub_bytes_per_second,
                  [this] { return has_duty(Duty::Scrubbing); }),
         deliverer(store->webhooks(), clock, delivery_options(webhook_guard)),
+        jobs_at_once(worker_options.threads),
         workers(
             {*store, *blobs, clock, budgets, [this](const std::string& blob) { return scrubber.verify_columns(blob); },
              computing_threads(settings)},
@@ -116,6 +117,7 @@ struct Daemon::Parts {
     }
     api.computing = computing_threads(settings);
     api.backups = &backups;
+    api.workers = [this] { return others == nullptr ? Result<int>(jobs_at_once) : others->workers(); };
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
     if (others != nullptr) {
       api.keys_in_flight.share(others);
@@ -283,6 +285,7 @@ struct Daemon::Parts {
   Bell bell;
   EventLog events{bell, make_id("run", clock.now()).substr(14)};
   Deliverer deliverer;
+  const int jobs_at_once;
   WorkerPool workers;
   ApiContext api;
   Backups backups;
@@ -394,6 +397,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
   if (parts->others != nullptr) {
     parts->others->listen(parts->hints());
+    parts->others->offer_workers(parts->jobs_at_once);
   }
   parts->workers.start();
   parts->scrubber.start();

@@ -20,7 +20,6 @@ const embed = option('--embed', undefined);
 
 const BUDGET_KIB = 120;       // scripts and styles, gzip as the daemon packs them; the two fonts stand beside it
 const FIRST_PAGE_KIB = 45;    // of these the shell and the Lab
-// package.json keeps the d3 libraries at the releases that consist of many modules: later ones are one file each, whole in every bundle.
 const TYPES = {'.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8',
                '.woff2': 'font/woff2', '.svg': 'image/svg+xml', '.txt': 'text/plain; charset=utf-8'};
 
@@ -30,7 +29,6 @@ const {metafile} = await build({
   entryPoints: [join(here, 'src/main.tsx'), join(here, 'src/style/main.css')],
   outdir: join(out, 'assets'), outbase: join(here, 'src'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
   assetNames: '[name]-[hash]', bundle: true, splitting: true, format: 'esm', minify: true, target: 'es2021',
-  alias: {'d3-interpolate': join(here, 'src/figure/interpolate.ts'), 'd3-format': join(here, 'src/figure/unformatted.ts')},
   jsx: 'automatic', jsxImportSource: 'preact', loader: {'.woff2': 'file', '.svg': 'file'}, legalComments: 'none',
   logLevel: 'warning', define: {DRIFTLAB_VERSION: JSON.stringify(JSON.parse(readFileSync(join(here, 'package.json'), 'utf8')).version)},
 });

@@ -1,7 +1,7 @@
 #include "core/campaign/pooled_sensor.hpp"
 
 #include "core/campaign/replicates.hpp"
-#include "core/campaign/structure.hpp"
+#include "core/campaign/told_structure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,37 +51,12 @@ std::vector<ReplicateGroup> group_by_condition(const std::vector<TableSource>& s
   return groups;
 }
 
-/// Names of the models that every source was fitted with, smaller ones first.
 std::vector<std::string> common_models(const std::vector<TableSource>& sources) {
-  std::vector<std::string> names;
-  for (const ReportedFit& fit : sources.front().channel.fits) {
-    const bool everywhere = std::all_of(sources.begin(), sources.end(), [&](const TableSource& source) {
-      return find_fit(source.channel.fits, fit.model) != nullptr;
-    });
-    if (everywhere && parse_model(fit.model)) {
-      names.push_back(fit.model);
-    }
+  std::vector<const std::vector<ReportedFit>*> rows;
+  for (const TableSource& source : sources) {
+    rows.push_back(&source.channel.fits);
   }
-  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-    const auto key = [](const std::string& name) { return std::pair(parse_model(name)->parameter_count(), name); };
-    return key(a) < key(b);
-  });
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
-StructureScore score_of(const ReportedFit& fit) {
-  StructureScore score;
-  if (!std::isfinite(fit.wic)) {
-    return score;
-  }
-  score.fitted = true;
-  score.criterion = fit.wic;
-  if (const auto& test = fit.j_test) {
-    score.misfit = std::isfinite(test->statistic) ? test->statistic : 0.0;
-    score.dof = std::isfinite(test->dof) ? test->dof : 0.0;
-  }
-  return score;
+  return shared_models(rows);
 }
 
 /// Stacks the recordings, or notes in `reason` that one of them has too few variances. Error: InvalidArgument.
@@ -221,31 +196,6 @@ PooledCondition conclude(ReplicateGroup& group) {
   return std::move(group.told);
 }
 
-PooledStructure structure_of(const StructureChoice& choice, const std::vector<std::string>& models,
-                             const std::vector<ReplicateGroup>& groups) {
-  PooledStructure structure;
-  structure.verdict = name_of(choice.verdict);
-  structure.statement = choice.statement;
-  structure.p = choice.p;
-  structure.statistic = choice.statistic;
-  structure.dof = choice.dof;
-  structure.common = models[choice.common];
-  structure.excess = choice.excess;
-  std::vector<std::size_t> order(models.size());
-  for (std::size_t s = 0; s < order.size(); ++s) {
-    order[s] = s;
-  }
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return std::pair(choice.sum[a], a) < std::pair(choice.sum[b], b); });
-  for (const std::size_t s : order) {
-    structure.ranking.push_back({models[s], choice.sum[s]});
-  }
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    structure.by_condition.push_back({label(groups[g].told.condition), models[choice.by_condition[g]]});
-  }
-  return structure;
-}
-
 /// Ranks the structures over all conditions, and gives the fits that are shown their profile intervals.
 Status choose_model(std::vector<ReplicateGroup>& groups, const std::vector<std::string>& models, PooledSensor& pooled) {
   if (models.empty()) {
@@ -261,7 +211,11 @@ Status choose_model(std::vector<ReplicateGroup>& groups, const std::vector<std::
   }
   const StructureChoice choice = choose_structure(models, scores);
   pooled.model = std::isfinite(choice.sum[choice.best]) ? models[choice.best] : "";
-  pooled.structure = structure_of(choice, models, groups);
+  std::vector<std::string> labels;
+  for (const ReplicateGroup& group : groups) {
+    labels.push_back(label(group.told.condition));
+  }
+  pooled.structure = told_structure(choice, models, labels);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const std::string& model : {models[choice.by_condition[g]], pooled.model}) {
       if (auto sharpened = sharpen(groups[g], model); !sharpened) {

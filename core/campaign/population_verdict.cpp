@@ -105,4 +105,14 @@ Verdict verdict_of(const PopulationReport& report) {
   return verdict;
 }
 
+std::optional<std::string> standing_out(const PopulationReport& report, const std::string& device) {
+  for (const Odd& one : odd_devices(report)) {
+    if (one.device == device) {
+      return one.device + " is not of the line of the " + std::to_string(report.devices.size()) + " devices of " +
+             report.model + ", by " + joined(one.by) + ".";
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace driftlab

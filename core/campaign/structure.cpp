@@ -82,27 +82,30 @@ std::optional<std::size_t> smallest_common(const std::vector<std::string>& names
   return common;
 }
 
-std::string statement_of(const StructureChoice& choice, const std::vector<std::string>& names) {
+std::string statement_of(const StructureChoice& choice, const std::vector<std::string>& names, StructureRows rows) {
+  const bool conditions = rows == StructureRows::Conditions;
+  const std::string row = conditions ? "condition" : "recording";
   const std::string& common = names[choice.common];
   const std::string p = choice.p < 0.01 ? " (p < 0.01)" : " (p = " + written("%.3g", choice.p) + ")";
   if (choice.by_condition.size() < 2) {
-    return "With one condition there is nothing to compare; its best structure is " + names[choice.best] + ".";
+    return "With one " + row + " there is nothing to compare; its best structure is " + names[choice.best] + ".";
   }
   switch (choice.verdict) {
     case StructureVerdict::Changes:
-      return "The structure changes with the condition: " + common +
-             " would serve all, but no condition shows its components together (criterion worse by " +
+      return (conditions ? "The structure changes with the condition: " : "The structures differ: ") + common +
+             " would serve all, but no " + row + " shows its components together (criterion worse by " +
              written("%.1f", choice.excess) + " or more).";
     case StructureVerdict::Undecided:
-      return "One structure, " + common + ", serves every condition better than others, but does not fit" + p +
+      return "One structure, " + common + ", serves every " + row + " better than others, but does not fit" + p +
              ": none of the candidates may be right.";
     case StructureVerdict::OneStructure:
       break;
   }
   const bool throughout = std::all_of(choice.by_condition.begin(), choice.by_condition.end(),
                                       [&](std::size_t best) { return best == choice.common; });
-  return "One structure, " + common + ", describes every condition while its parameters move" + p +
-         (throughout ? "." : "; not every condition shows all of its components.");
+  return (conditions ? "One structure, " + common + ", describes every condition while its parameters move"
+                     : "They have one structure: " + common + " describes every recording") +
+         p + (throughout ? "." : "; not every " + row + " shows all of its components.");
 }
 
 }  // namespace
@@ -120,7 +123,7 @@ std::string_view name_of(StructureVerdict verdict) {
 }
 
 StructureChoice choose_structure(const std::vector<std::string>& names,
-                                 const std::vector<std::vector<StructureScore>>& scores) {
+                                 const std::vector<std::vector<StructureScore>>& scores, StructureRows rows) {
   StructureChoice choice;
   choice.sum.assign(names.size(), 0.0);
   Criteria criteria;
@@ -136,7 +139,8 @@ StructureChoice choose_structure(const std::vector<std::string>& names,
   choice.best = least_of(choice.sum);
   const auto common = smallest_common(names, criteria);
   if (!common || !std::isfinite(choice.sum[choice.best])) {
-    choice.statement = "No structure was fitted under every condition.";
+    choice.statement = rows == StructureRows::Conditions ? "No structure was fitted under every condition."
+                                                         : "No structure was fitted to every recording.";
     return choice;
   }
   choice.common = *common;
@@ -155,7 +159,7 @@ StructureChoice choose_structure(const std::vector<std::string>& names,
                      : choice.p < kSize      ? StructureVerdict::Undecided
                                              : StructureVerdict::OneStructure;
   }
-  choice.statement = statement_of(choice, names);
+  choice.statement = statement_of(choice, names, rows);
   return choice;
 }
 

@@ -56,9 +56,13 @@ struct StructureChoice {
   std::string statement;  ///< the verdict as a sentence
 };
 
+/// What the sentence calls the rows: conditions of one sensor, or recordings that somebody put beside each other.
+enum class StructureRows { Conditions, Recordings };
+
 /// `scores[condition][candidate]`, all rows as long as `names`, which are names of models; at least one condition. Ties
 /// go to the earlier name.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<std::string>& names,
-                                               const std::vector<std::vector<StructureScore>>& scores);
+                                               const std::vector<std::vector<StructureScore>>& scores,
+                                               StructureRows rows = StructureRows::Conditions);
 
 }  // namespace driftlab

@@ -257,6 +257,16 @@ void say_levels(const ParameterTable& table, const DensityOf& density, Verdict& 
   }
 }
 
+/// Whether one structure serves every condition, and how the model of the table is right beside it.
+void say_structure(const ParameterTable& table, Verdict& verdict) {
+  if (table.structure && !table.structure->statement.empty()) {
+    verdict.details.push_back(table.structure->statement);
+  }
+  if (!table.model_note.empty()) {
+    verdict.details.push_back(table.model_note);
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(VerdictLevel level) {
@@ -293,6 +303,7 @@ Verdict verdict_of(const ParameterTable& table) {
   if (!density) {
     verdict.sentence =
         "No recording of this table gives a white-noise density N, and the model " + table.model + " holds none.";
+    say_structure(table, verdict);
     return verdict;
   }
   say_levels(table, *density, verdict);
@@ -314,12 +325,7 @@ Verdict verdict_of(const ParameterTable& table) {
       raise(verdict, VerdictLevel::Look);
     }
   }
-  if (table.structure && !table.structure->statement.empty()) {
-    verdict.details.push_back(table.structure->statement);
-  }
-  if (!table.model_note.empty()) {
-    verdict.details.push_back(table.model_note);
-  }
+  say_structure(table, verdict);
   if (table.data_sheet) {
     for (const SheetFigure& figure : table.data_sheet->figures) {
       verdict.details.push_back(sentence_of(figure) + " (" + table.data_sheet->sensor + ").");

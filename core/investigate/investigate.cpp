@@ -5,6 +5,7 @@
 #include "core/investigate/report/earned.hpp"
 #include "core/investigate/report/explain.hpp"
 #include "core/investigate/report/figures.hpp"
+#include "core/investigate/report/innovation_spectrogram.hpp"
 #include "core/investigate/report/order.hpp"
 #include "core/investigate/report/outage_gain.hpp"
 #include "core/investigate/report/recording_findings.hpp"
@@ -172,6 +173,19 @@ std::size_t first_shown(const Report& report, std::size_t group) {
   return 0;
 }
 
+/// Whether noise of a channel still changes, in time, frequency or with a quantity.
+bool noise_still_changes(const std::string& channel, const std::vector<Remainder>& remains,
+                         const std::vector<UnnamedFinding>& unnamed) {
+  return std::any_of(remains.begin(), remains.end(),
+                     [&](const Remainder& remainder) {
+                       return remainder.channel == channel && remainder.in_time_or_frequency &&
+                              remainder.p_study < kShown;
+                     }) ||
+         std::any_of(unnamed.begin(), unnamed.end(), [&](const UnnamedFinding& found) {
+           return found.effect.column == channel && found.effect.kind == UnnamedKind::Variance;
+         });
+}
+
 /// What the report takes from the samples of a channel.
 struct Taken {
   ChannelChecks checks;
@@ -259,6 +273,7 @@ Taken take_from(const ChannelGroup& group, GroupOutcome& outcome, const RunContr
         [&] { taken.remains = remains_of_channel(group, outcome.after); },
         [&] { taken.unnamed = find_unnamed(group, outcome.after, outcome.model.beside.noise.components.size()); }};
     parallel_for(control.threads, of_the_extended.size(), [&](std::size_t i) { of_the_extended[i](); }, control.stop);
+    taken.figures.figures.spectrogram = spectrogram_of_innovations(group, outcome.after, taken.remains);
     take_refitted_noise(taken.unnamed, outcome);
   }
   outcome.after.residual.clear();
@@ -391,6 +406,9 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (outcomes[g].usable) {
       report.figures.push_back(figures_of(taken.figures[g], first_shown(report, g), report.checks));
+      if (!noise_still_changes(groups[g].column, remains, taken.unnamed)) {
+        report.figures.back().spectrogram.reset();
+      }
     }
   }
   if (options.predict_outages) {

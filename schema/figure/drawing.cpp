@@ -1,6 +1,7 @@
 #include "schema/figure/drawing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace driftlab::figure {
@@ -112,6 +113,50 @@ std::vector<std::size_t> visible(const Series& series, const Area& area) {
 
 std::optional<double> at(const std::vector<std::optional<double>>& values, std::size_t i) {
   return i < values.size() ? values[i] : std::nullopt;
+}
+
+/// Pixels half way between neighbours, and as far beyond the first and the last.
+std::vector<double> edges_of(const std::vector<double>& middles, const Scale& scale) {
+  std::vector<double> edges;
+  for (std::size_t i = 0; i <= middles.size() && middles.size() > 1; ++i) {
+    const std::size_t last = middles.size() - 1;
+    const auto pixel = [&](std::size_t k) { return scale.at(middles[k]); };
+    edges.push_back(i == 0     ? 1.5 * pixel(0) - 0.5 * pixel(1)
+                    : i > last ? 1.5 * pixel(last) - 0.5 * pixel(last - 1)
+                               : 0.5 * (pixel(i - 1) + pixel(i)));
+  }
+  return edges;
+}
+
+/// `#rrggbb` with the share of it that is seen; empty where less than one part in 64 is.
+std::string tinted(double share) {
+  constexpr std::array kDigits{'0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'};
+  const auto alpha = static_cast<std::size_t>(std::lround(255.0 * std::min(1.0, std::abs(share))));
+  if (!std::isfinite(share) || alpha < 4) {
+    return "";
+  }
+  return std::string(share > 0.0 ? palette::kRobust : palette::kModel) + kDigits.at(alpha / 16) +
+         kDigits.at(alpha % 16);
+}
+
+void add_cells(const Cells& cells, const Area& area, std::vector<Shape>& shapes) {
+  const std::vector<double> x = edges_of(cells.x, area.x);
+  const std::vector<double> y = edges_of(cells.y, area.y);
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    for (std::size_t k = 0; k + 1 < y.size() && i * cells.y.size() + k < cells.values.size(); ++k) {
+      Shape cell;
+      cell.kind = ShapeKind::Polygon;
+      cell.role = Role::Cell;
+      cell.fill = tinted(cells.values[i * cells.y.size() + k]);
+      cell.points = {{tenth(x[i]), tenth(y[k])},
+                     {tenth(x[i + 1]), tenth(y[k])},
+                     {tenth(x[i + 1]), tenth(y[k + 1])},
+                     {tenth(x[i]), tenth(y[k + 1])}};
+      if (!cell.fill.empty()) {
+        shapes.push_back(std::move(cell));
+      }
+    }
+  }
 }
 
 void add_band(const Series& series, const Area& area, std::vector<Shape>& shapes) {
@@ -294,6 +339,7 @@ void add_keys(const Layout& plan, std::vector<Shape>& shapes) {
 void add_data(const Area& area, int index, std::vector<Shape>& shapes) {
   const std::vector<Series>& series = area.plot->series;
   const std::size_t first = shapes.size();
+  add_cells(area.plot->cells, area, shapes);
   for (auto one = series.rbegin(); one != series.rend(); ++one) {
     add_band(*one, area, shapes);
   }

@@ -13,8 +13,8 @@ struct Point {
 enum class ShapeKind { Line, Path, Polygon, Circle, Text };
 enum class Anchor { Start, Middle, End };
 
-/// What a shape stands for; the test that compares drawings looks at bands, curves, intervals and marks.
-enum class Role { Frame, Grid, Guide, Band, Curve, Interval, Mark, Note, Key, Words };
+/// What a shape stands for; the test that compares drawings looks at cells, bands, curves, intervals and marks.
+enum class Role { Frame, Grid, Guide, Cell, Band, Curve, Interval, Mark, Note, Key, Words };
 
 struct Shape {
   ShapeKind kind = ShapeKind::Line;

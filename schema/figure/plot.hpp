@@ -66,10 +66,19 @@ struct Guide {
   std::string text;
 };
 
+/// A value for each pair of x and y, as a colour: vermilion above 0, blue below, full from 1 and from -1 on. Cells
+/// reach half way to their neighbours, by the logarithm on a logarithmic axis.
+struct Cells {
+  std::vector<double> x = {};       ///< middles, rising
+  std::vector<double> y = {};       ///< likewise
+  std::vector<double> values = {};  ///< column by column; NaN: nothing is drawn
+};
+
 struct Plot {
   Axis x = {};
   Axis y = {};
   std::vector<Series> series = {};  ///< the first lies on top
+  Cells cells = {};                 ///< below everything
   std::vector<Note> notes = {};
   std::vector<Guide> guides = {};
   /// One length for a decade of both logarithmic axes, so that a slope of -1/2 looks like one; for a unit of linear

@@ -57,6 +57,8 @@ const char* name_of(Role role) {
       return "grid";
     case Role::Guide:
       return "guide";
+    case Role::Cell:
+      return "cell";
     case Role::Band:
       return "band";
     case Role::Curve:

@@ -69,6 +69,21 @@ class Dots {
   std::size_t rows_;
 };
 
+/// Cells of a quarter of the full colour and more; whether they are above or below is not to be seen.
+void plot_cells(const Area& area, Dots& dots) {
+  constexpr double kSeen = 0.25;
+  const Cells& cells = area.plot->cells;
+  const auto at = [](double pixel, double from, double to, double size) { return (pixel - from) * size / (to - from); };
+  for (std::size_t i = 0; i < cells.x.size(); ++i) {
+    for (std::size_t k = 0; k < cells.y.size() && i * cells.y.size() + k < cells.values.size(); ++k) {
+      if (std::abs(cells.values[i * cells.y.size() + k]) >= kSeen) {
+        dots.set(at(area.x.at(cells.x[i]), area.left, area.right, dots.width()),
+                 at(area.y.at(cells.y[k]), area.top, area.bottom, dots.height()));
+      }
+    }
+  }
+}
+
 /// The measured series as points of two by two dots with their intervals, models as lines; components stay away.
 void plot_series(const Area& area, Dots& dots) {
   const double wide = dots.width() / (area.right - area.left);
@@ -139,6 +154,7 @@ std::string to_terminal(const Figure& figure, std::size_t columns) {
   const Area& area = plan.areas.front();
   const std::size_t wide = std::max<std::size_t>(columns, 40) - kMargin - 1;
   Dots dots(wide, kRows);
+  plot_cells(area, dots);
   plot_series(area, dots);
   std::string text = cut(figure.title, columns) + "\n" + cut(area.plot->y.name, columns) + "\n";
   for (std::size_t row = 0; row < kRows; ++row) {

@@ -58,20 +58,10 @@ Json histogram_to_json(const ChannelLook& look, const std::optional<RobustHistog
 Json spectrogram_to_json(const ChannelLook& look, const ChannelLook::Ratio& ratio) {
   Json document = head_of(look);
   const Spectrogram& found = ratio.spectrogram;
-  const std::size_t bands = found.frequency_hz.size();
-  const std::vector<double> logs = ratio.log10();
-  Json rows = Json::array();
-  for (std::size_t cell = 0; cell < found.time_s.size(); ++cell) {
-    Json row = Json::array();
-    for (std::size_t band = 0; band < bands; ++band) {
-      row.push_back(rounded(logs[cell * bands + band], 3));
-    }
-    rows.push_back(std::move(row));
-  }
   document["expected"] = ratio.of_model ? "model" : "median";
   document["time_s"] = numbers(found.time_s);
   document["f_hz"] = numbers(found.frequency_hz);
-  document["log10_ratio"] = std::move(rows);
+  document["log10_ratio"] = rounded_rows(ratio.log10(), found.frequency_hz.size(), 3);
   document["window_samples"] = found.window_samples;
   return document;
 }

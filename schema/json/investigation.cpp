@@ -3,6 +3,7 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/figures.hpp"
 #include "core/investigate/report/order.hpp"
+#include "schema/json/rounded.hpp"
 #include "schema/json/simulation_model.hpp"
 #include "schema/json/stored_channel.hpp"
 #include "schema/json/unnamed_effect.hpp"
@@ -80,33 +81,44 @@ Json allan_json(const investigate::ChannelFigures& figures, double level) {
   return list;
 }
 
+Json spectrogram_json(const investigate::InnovationSpectrogram& picture) {
+  return Json{{"recording", picture.recording},
+              {"time_s", numbers(picture.time_s)},
+              {"f_hz", numbers(picture.f_hz)},
+              {"log10_ratio", rounded_rows(picture.log10_ratio, picture.f_hz.size(), 2)}};
+}
+
 Json figures_json(const investigate::ChannelFigures& figures) {
   const investigate::LabUnit unit = investigate::level_unit(figures.unit);
   const double level = unit.per_si;
   const double density = unit.per_si * unit.per_si;
-  return Json{{"channel", figures.channel},
-              {"recording", figures.recording},
-              {"unit", unit.symbol},
-              {"allan", allan_json(figures, level)},
-              {"wavelet",
-               {{"scale_s", numbers(figures.scale_s)},
-                {"measured", numbers(figures.deviation_before, level)},
-                {"baseline", band_json(figures.baseline, level)},
-                {"remaining", numbers(figures.deviation_after, level)},
-                {"extended", band_json(figures.extended, level)}}},
-              {"innovations", ratios_json(figures.ratios)},
-              {"spectrum",
-               {{"f_hz", numbers(figures.f_hz)},
-                {"measured", numbers(figures.density_before, density)},
-                {"highest", numbers(figures.highest_before, density)},
-                {"baseline", band_json(figures.density_baseline, density)},
-                {"chance", numbers(figures.chance, density)},
-                {"remaining", numbers(figures.density_after, density)},
-                {"highest_remaining", numbers(figures.highest_after, density)}}},
-              {"course",
-               {{"time_s", numbers(figures.time_s)},
-                {"error", numbers(figures.error, level)},
-                {"effect", numbers(figures.effect, level)}}}};
+  Json document{{"channel", figures.channel},
+                {"recording", figures.recording},
+                {"unit", unit.symbol},
+                {"allan", allan_json(figures, level)},
+                {"wavelet",
+                 {{"scale_s", numbers(figures.scale_s)},
+                  {"measured", numbers(figures.deviation_before, level)},
+                  {"baseline", band_json(figures.baseline, level)},
+                  {"remaining", numbers(figures.deviation_after, level)},
+                  {"extended", band_json(figures.extended, level)}}},
+                {"innovations", ratios_json(figures.ratios)},
+                {"spectrum",
+                 {{"f_hz", numbers(figures.f_hz)},
+                  {"measured", numbers(figures.density_before, density)},
+                  {"highest", numbers(figures.highest_before, density)},
+                  {"baseline", band_json(figures.density_baseline, density)},
+                  {"chance", numbers(figures.chance, density)},
+                  {"remaining", numbers(figures.density_after, density)},
+                  {"highest_remaining", numbers(figures.highest_after, density)}}},
+                {"course",
+                 {{"time_s", numbers(figures.time_s)},
+                  {"error", numbers(figures.error, level)},
+                  {"effect", numbers(figures.effect, level)}}}};
+  if (figures.spectrogram) {
+    document["spectrogram"] = spectrogram_json(*figures.spectrogram);
+  }
+  return document;
 }
 
 /// Predicted mean horizontal errors; `measured` needs a reference trajectory, which a study of causes has none of.

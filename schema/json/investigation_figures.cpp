@@ -5,6 +5,8 @@
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
+#include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -128,6 +130,34 @@ Figure course(const Json& series, const std::string& title, const std::string& u
                    "Means of the error over time in one recording, and the effect that was found.", {std::move(plot)});
 }
 
+/// The innovations of the recording whose noise changes most.
+Figure spectrogram(const Json& series, const std::string& title) {
+  const Json& picture = series.at("spectrogram");
+  Plot plot{.x = {ScaleKind::Linear, "time, s"}, .y = {ScaleKind::Log, "frequency, Hz"}};
+  plot.cells = {numbers_of(picture.at("time_s")), numbers_of(picture.at("f_hz")), {}};
+  for (const Json& row : picture.at("log10_ratio")) {
+    for (const std::optional<double> value : values_of(row)) {
+      plot.cells.values.push_back(value.value_or(std::nan("")));
+    }
+  }
+  for (const auto& [name, colour] :
+       {std::pair{"more than expected", figure::palette::kRobust}, std::pair{"less", figure::palette::kModel}}) {
+    Series key = curve(name, {}, {});
+    key.colour = colour;
+    key.width = 6.0;
+    plot.series.push_back(std::move(key));
+  }
+  if (!plot.cells.x.empty() && !plot.cells.y.empty()) {
+    plot.x.domain = {plot.cells.x.front(), plot.cells.x.back()};
+    plot.y.domain = {plot.cells.y.front(), plot.cells.y.back()};
+  }
+  plot.height = kHeight;
+  return figure_of(title + ": spectrogram of the innovations of " + picture.at("recording").get<std::string>(),
+                   "Density of what the extended model leaves over that of white noise, by time and frequency; full "
+                   "colour is ten times more or less.",
+                   {std::move(plot)});
+}
+
 /// A profile that the extended model holds without a name.
 Figure profile(const Json& found, const std::string& name) {
   const auto kind = found.at("kind").get<std::string>();
@@ -164,6 +194,9 @@ std::vector<NamedFigure> figures_of_investigation(const Json& document, const st
     figures.push_back({word(name + "-spectrum"), spectrum(series, name)});
     figures.push_back({word(name + "-wavelet"), wavelets(series, name)});
     figures.push_back({word(name + "-course"), course(series, name, unit)});
+    if (series.contains("spectrogram")) {
+      figures.push_back({word(name + "-spectrogram"), spectrogram(series, name)});
+    }
   }
   for (const Json& found : document.value("unnamed", Json::array())) {
     const auto name = found.at("channel").get<std::string>();

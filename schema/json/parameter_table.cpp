@@ -100,9 +100,7 @@ Json to_json(const ParameterTable& table) {
       {"rows", std::move(rows)}};
   document["reference"] = table.rows.empty() ? Json(nullptr) : Json(to_text(table.rows[table.reference].condition));
   if (table.structure) {
-    document["structure"] = Json{{"verdict", table.structure->verdict},
-                                 {"common", table.structure->common},
-                                 {"statement", table.structure->statement}};
+    document["structure"] = to_json(*table.structure);
   }
   document["model_note"] = text_or_null(table.model_note);
   if (table.data_sheet) {

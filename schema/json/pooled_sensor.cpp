@@ -51,26 +51,6 @@ PooledCondition condition_entry_from_json(const Json& document) {
   return entry;
 }
 
-Json structure_to_json(const PooledStructure& structure) {
-  Json ranking = Json::array();
-  for (const RankedStructure& ranked : structure.ranking) {
-    ranking.push_back(Json{{"model", ranked.model}, {"criterion", number(ranked.criterion)}});
-  }
-  Json by_condition = Json::array();
-  for (const ConditionStructure& one : structure.by_condition) {
-    by_condition.push_back(Json{{"label", one.label}, {"model", one.model}});
-  }
-  return Json{{"verdict", structure.verdict},
-              {"statement", structure.statement},
-              {"p", number(structure.p)},
-              {"statistic", number(structure.statistic)},
-              {"dof", number(structure.dof)},
-              {"common", structure.common},
-              {"excess", number(structure.excess)},
-              {"ranking", std::move(ranking)},
-              {"by_condition", std::move(by_condition)}};
-}
-
 PooledStructure structure_from_json(const Json& document) {
   PooledStructure structure;
   structure.verdict = document.at("verdict").get<std::string>();
@@ -121,6 +101,26 @@ Json to_json(const std::optional<RecordingAgreement>& agreement) {
               {"agree", agreement->agree()}};
 }
 
+Json to_json(const PooledStructure& structure) {
+  Json ranking = Json::array();
+  for (const RankedStructure& ranked : structure.ranking) {
+    ranking.push_back(Json{{"model", ranked.model}, {"criterion", number(ranked.criterion)}});
+  }
+  Json by_condition = Json::array();
+  for (const ConditionStructure& one : structure.by_condition) {
+    by_condition.push_back(Json{{"label", one.label}, {"model", one.model}});
+  }
+  return Json{{"verdict", structure.verdict},
+              {"statement", structure.statement},
+              {"p", number(structure.p)},
+              {"statistic", number(structure.statistic)},
+              {"dof", number(structure.dof)},
+              {"common", structure.common},
+              {"excess", number(structure.excess)},
+              {"ranking", std::move(ranking)},
+              {"by_condition", std::move(by_condition)}};
+}
+
 Json to_json(const PooledSensor& pooled) {
   Json conditions = Json::array();
   for (const PooledCondition& entry : pooled.conditions) {
@@ -131,7 +131,7 @@ Json to_json(const PooledSensor& pooled) {
     document["channel"] = pooled.channel;
   }
   document["model"] = text_or_null(pooled.model);
-  document["structure"] = pooled.structure ? structure_to_json(*pooled.structure) : Json(nullptr);
+  document["structure"] = pooled.structure ? to_json(*pooled.structure) : Json(nullptr);
   document["conditions"] = std::move(conditions);
   if (!pooled.reason.empty()) {
     document["reason"] = pooled.reason;

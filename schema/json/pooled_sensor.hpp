@@ -7,6 +7,9 @@ namespace driftlab {
 
 [[nodiscard]] Json to_json(const PooledSensor& pooled);
 
+/// Whether one structure serves every condition, with the candidates that were compared.
+[[nodiscard]] Json to_json(const PooledStructure& structure);
+
 /// null where there is nothing to compare. A test over averaged parameters has a whole number of degrees of freedom.
 [[nodiscard]] Json to_json(const std::optional<RecordingAgreement>& agreement);
 

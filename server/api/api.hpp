@@ -50,7 +50,8 @@ struct ApiContext {
   std::function<std::vector<StandingState>()> bad_states = {};  ///< what is wrong now
   KeysInFlight keys_in_flight = {};
   Backups* backups = nullptr;
-  int computing = 0;  ///< threads that jobs share; 0: one for each core
+  int computing = 0;                          ///< threads that jobs share; 0: one for each core
+  std::function<Result<int>()> workers = {};  ///< jobs that run at a time, in all processes that have the store
 
   /// For a job that is asked for: what it takes is estimated, and no columns are read yet.
   [[nodiscard]] JobContext job_context() const { return {store, blobs, clock, budgets, {}, computing}; }

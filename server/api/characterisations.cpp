@@ -6,25 +6,13 @@
 #include "schema/json/stored_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/api/newest_fits.hpp"
 #include "server/http/problem.hpp"
 
 #include <algorithm>
 
 namespace driftlab::server {
 namespace {
-
-/// A recording has this many fits at most: nine candidates of every axis of an inertial unit are 54.
-constexpr int kMostFits = 2000;
-
-Error not_characterised(const std::string& recording_id) {
-  return {ErrorCode::NotFound, "The recording " + recording_id + " has not been characterised.", {}};
-}
-
-Error no_channel(const std::string& recording_id, const std::string& name) {
-  return {ErrorCode::NotFound,
-          "The recording " + recording_id + " has no channel '" + name + "' in its result.",
-          {{"parameter", "channel"}}};
-}
 
 /// Where a job's document speaks of a recording: by its id, or by the name that a study gave it.
 Result<Json> recording_in(const Json& document, const Job& job, const std::string& recording_id) {
@@ -38,22 +26,6 @@ Result<Json> recording_in(const Json& document, const Job& job, const std::strin
   }
   return fail(ErrorCode::Internal,
               "The result of the job " + job.id + " does not hold the recording " + recording_id + ".");
-}
-
-/// The fits of the newest job that characterised the recording; empty where none has.
-Result<std::vector<Fit>> newest_fits(Store& store, const std::string& recording_id) {
-  FitFilter filter;
-  filter.recording_id = recording_id;
-  filter.latest_only = true;
-  auto fits = store.fits(filter, Page{"", kMostFits});
-  if (!fits || fits->empty()) {
-    return fits;
-  }
-  const std::string newest = std::max_element(fits->begin(), fits->end(), [](const Fit& a, const Fit& b) {
-                               return a.created_at < b.created_at;
-                             })->job_id;
-  std::erase_if(*fits, [&](const Fit& fit) { return fit.job_id != newest; });
-  return fits;
 }
 
 struct Characterised {

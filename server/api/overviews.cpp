@@ -27,8 +27,17 @@ Json to_json(const ShownResult& shown) {
   return document;
 }
 
+/// A verdict on a device among those of its model, which `channel` then names: of a characterisation, but of no
+/// recording.
+bool is_of_line(const ResultVerdict& item) { return item.recording_id.empty() && !item.channel.empty(); }
+
+std::string kind_of(const ResultVerdict& item) { return is_of_line(item) ? "population" : item.kind; }
+
 /// The page of the API that holds what the verdict rests on.
 std::string address_of(const ResultVerdict& item) {
+  if (is_of_line(item)) {
+    return "/v1/populations?model=" + percent_encode(item.channel);
+  }
   return item.recording_id.empty()
              ? result_address(item.kind, item.job_id, item.investigation_id)
              : "/v1/recordings/" + item.recording_id + "/characterisation?channel=" + percent_encode(item.channel);
@@ -38,13 +47,13 @@ Json to_json(const ResultVerdict& item) {
   return Json{{"id", item.id},
               {"level", item.level},
               {"verdict", item.verdict},
-              {"kind", item.kind},
+              {"kind", kind_of(item)},
               {"href", address_of(item)},
               {"job", item.job_id},
               {"device", text_or_null(item.device_id)},
               {"device_name", text_or_null(item.device_name)},
               {"recording", text_or_null(item.recording_id)},
-              {"channel", text_or_null(item.channel)},
+              {"channel", is_of_line(item) ? Json(nullptr) : text_or_null(item.channel)},
               {"created_at", rfc3339(item.created_at)}};
 }
 
@@ -102,11 +111,18 @@ Result<Response> get_counts(ApiContext& context, const Request& request) {
   return json_response(200, document);
 }
 
+/// How many jobs run at a time, which no row of the store says.
+Result<Response> get_workers(ApiContext& context) {
+  const auto workers = context.workers();
+  return workers ? Result<Response>(json_response(200, Json{{"workers", *workers}})) : fail(workers.error());
+}
+
 /// The newest result of a device: by the verdicts that are kept, or a characterisation of before all of them were.
 Json newest_result(const std::optional<ResultVerdict>& said, const std::optional<ChannelResult>& newest) {
   if (said && (!newest || said->created_at >= newest->created_at)) {
-    return Json{{"kind", said->kind},
-                {"id", !said->recording_id.empty()       ? said->recording_id
+    return Json{{"kind", kind_of(*said)},
+                {"id", is_of_line(*said)                 ? said->channel
+                       : !said->recording_id.empty()     ? said->recording_id
                        : !said->investigation_id.empty() ? said->investigation_id
                                                          : said->job_id},
                 {"href", address_of(*said)},
@@ -168,6 +184,7 @@ void add_overview_routes(Router& router, ApiContext& context) {
   router.add(from_rows({"GET", "/v1/counts", "getCounts", {"since", "include"}, Handler([&](const Request& r) {
                           return get_counts(context, r);
                         })}));
+  router.add({"GET", "/v1/workers", "getWorkers", {}, Handler([&](const Request&) { return get_workers(context); })});
   router.add(from_rows({"GET",
                         "/v1/attention",
                         "listAttention",

@@ -1,6 +1,7 @@
 #include "core/campaign/regression/kept_settings.hpp"
 #include "schema/json/recording_tags.hpp"
 #include "schema/json/regression.hpp"
+#include "schema/json/stored_member.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"

@@ -25,6 +25,7 @@
   RESOURCE(add_event_routes)            \
   RESOURCE(add_fit_routes)              \
   RESOURCE(add_parameter_table_routes)  \
+  RESOURCE(add_structure_routes)        \
   RESOURCE(add_study_routes)            \
   RESOURCE(add_outage_evaluation_routes) \
   RESOURCE(add_drive_routes)            \

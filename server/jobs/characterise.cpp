@@ -10,6 +10,7 @@
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/line_verdicts.hpp"
 #include "server/jobs/stored_recordings.hpp"
 #include "server/jobs/told_glance.hpp"
 
@@ -171,6 +172,9 @@ class Characterise final : public JobKind {
     document["study"] = request["inputs"].value("study", Json());
     add_summary(document, found->together);
     results.document_json = to_text(document);
+    if (auto compared = add_line_verdicts(context.store, results); !compared) {
+      return fail(compared.error());
+    }
     return results;
   }
 

@@ -4,6 +4,7 @@
 /// document's. Whole document, revisions of its recordings and what stored models say are written into the request when
 /// it is queued. `parameters`: {"question": run | simulate | explain | compare, ...} (schema/json/drive_request.hpp),
 /// optional.
+#include "core/analysis/drive_verdict.hpp"
 #include "schema/json/drive_document.hpp"
 #include "schema/json/drive_request.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -119,6 +120,8 @@ class DriveEvaluationKind final : public JobKind {
     }
     JobResults results;
     results.document_json = to_text(result);
+    const Verdict verdict = verdict_of(*answer);
+    results.verdicts.push_back({.level = std::string(driftlab::name_of(verdict.level)), .verdict = verdict.sentence});
     return results;
   }
 };

@@ -4,6 +4,7 @@
 #include "server/store/store.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace driftlab::server {
@@ -12,5 +13,12 @@ namespace driftlab::server {
 /// those of the store. Cost: some ms a device.
 [[nodiscard]] Result<PopulationReport> stored_populations(Store& store, const std::string& model,
                                                           std::optional<Quantity> quantity);
+
+/// The populations as they are once `fresh` is stored, which takes the place of older results of the same recordings:
+/// of the sensor axes that it has, of a model with at least `fewest` and at most `most` devices. Nothing for any other
+/// model. Errors: those of the store.
+[[nodiscard]] Result<std::optional<PopulationReport>> populations_with(Store& store, const std::string& model,
+                                                                       std::span<const ChannelResult> fresh,
+                                                                       std::size_t fewest, std::size_t most);
 
 }  // namespace driftlab::server

@@ -1,10 +1,10 @@
 #pragma once
 /// Coordination of several daemons and workers on one database: which process performs each shared duty, which
-/// idempotency keys are in use, and notices of changes.
+/// idempotency keys are in use, how many jobs all of them run at a time, and notices of changes.
 ///
-/// A daemon that has its store alone needs no such object. Duties and keys are held by advisory locks of a connection,
-/// so that they end with the process that holds them, however it ends. Hints may be lost with a connection, so a
-/// process that acts on them also polls the store.
+/// A daemon that has its store alone needs no such object. Duties, keys and workers are held by advisory locks of a
+/// connection, so that they end with the process that holds them, however it ends. Hints may be lost with a connection,
+/// so a process that acts on them also polls the store.
 #include "core/signal/result.hpp"
 
 #include <functional>
@@ -54,6 +54,10 @@ class Coordination : public SharedKeys {
   /// Whether this process holds the duty now. A duty that no process holds is taken by this call. Queries the database
   /// each time.
   [[nodiscard]] virtual bool has_duty(Duty duty) = 0;
+  /// Says how many jobs this process runs at a time, until it ends.
+  virtual void offer_workers(int count) = 0;
+  /// How many jobs all processes run at a time that have the store now. Queries the database. Errors: Io.
+  [[nodiscard]] virtual Result<int> workers() = 0;
   /// Sends a hint to all other processes; one too long for a notification (8000 bytes) reaches them as `lost`.
   virtual void tell(std::string_view words) = 0;
   /// Begins to receive hints. Call once.

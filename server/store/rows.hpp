@@ -181,9 +181,9 @@ struct ResultVerdict {
   std::string kind = {};              ///< of the job; known once it is stored
   std::string device_id = {};         ///< empty: it speaks of no device, or of several
   std::string recording_id = {};      ///< empty: it speaks of the job's result as a whole
-  std::string channel = {};           ///< the channel that says most against itself; empty likewise
+  std::string channel = {};           ///< that says most against itself; without a recording a model: of its devices
   std::string level = {};             ///< `fine`, or `look` or `wrong`: a person must read it
-  std::string verdict = {};           ///< one sentence
+  std::string verdict = {};           ///< one sentence; empty, of a model: it says nothing any more of the device
   std::string investigation_id = {};  ///< read only: what the job made; empty: it is of another kind
   std::string device_name = {};       ///< read only
   UtcMicros created_at = 0;

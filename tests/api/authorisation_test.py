@@ -274,6 +274,8 @@ class OtherDevices(GuardedDaemon):
                 target += f"?device={of['name']}&axis=z"
             elif group == "exports" and "{" in path:
                 target += f"?device={of['name']}"
+            elif group == "structures":
+                target += f"?of={of['recording']}:gz,{of['recording']}"
             elif group == "populations":
                 target += "?model=one-line"
             elif group == "search":

@@ -240,6 +240,7 @@ class Operations(DaemonTest):
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
                 target += "?q=phone" if path == "/v1/search" else ""
+                target += f"?of={first.json['id']}:gz,{first.json['id']}:gz" if path == "/v1/structures" else ""
                 target += "?model=one-line" if path == "/v1/populations" else ""
                 target += "?device=phone-07" if path == "/v1/exports/{target}" else ""
                 target += f"?recording={first.json['id']}&channel=gz" if path == "/v1/models/{id}/implied" else ""

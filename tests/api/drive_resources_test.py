@@ -128,6 +128,19 @@ class Drives(Asked):
         self.assertIn("for drives", fixes["quality"]["notes"][0])
         self.problem(422, "unknown_column", self.daemon.upload(samples.csv([[0.01 * i for i in range(50)]], ["t"]), columns="t=time::s"))
 
+    def test_what_it_comes_to_is_the_newest_result_of_its_device(self) -> None:
+        drive = self.expect(201, self.daemon.post("/v1/drives", self.uploaded("newest", seed=11))).json["id"]
+        asked = self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": drive, "question": "simulate", "runs": 1}))
+        self.daemon.finished(asked.json["id"])
+        told = self.expect(200, self.daemon.get(asked.headers["location"])).json["evaluation"]
+        latest = self.expect(200, self.daemon.get("/v1/devices/newest/summary")).json["latest"]
+        self.assertEqual((latest["kind"], latest["id"], latest["href"]), ("drive_evaluation", asked.json["id"], asked.headers["location"]))
+        self.assertTrue(told["summary"].startswith(latest["verdict"]) and latest["verdict"].endswith("."), latest)
+        trusted = all(each["coverage95"]["value"] >= 0.9 for each in told["durations"])
+        self.assertEqual(latest["level"], "fine" if trusted else "look")
+        looked = [each["job"] for each in self.daemon.items("/v1/attention?device=newest")]
+        self.assertEqual(looked, [] if trusted else [asked.json["id"]])
+
     def test_a_recording_revised_since_is_not_mixed_in(self) -> None:
         document = self.uploaded("revised", seed=10)
         drive = self.expect(201, self.daemon.post("/v1/drives", document)).json["id"]

@@ -31,7 +31,28 @@ class JobTest(DaemonTest):
         return str(self.expect(201, self.daemon.upload(samples.npy(columns), device=f"long-{seed}", rate_hz=100, columns=roles)).json["id"])
 
 
+class Structures(JobTest):
+    def test_recordings_of_any_devices_have_one_structure_or_not(self) -> None:
+        ids = [self.recording(seed, 4096, device=f"structure-{seed}") for seed in (71, 72)]
+        asked = "/v1/structures?of=" + ",".join(f"{id}:gz" for id in ids)
+        self.problem(404, "not_found", self.daemon.get(asked))
+        for id in ids:
+            self.daemon.finished(self.daemon.characterise(id, models=["WN", "WN+GM"]).json["id"])
+        told = self.expect(200, self.daemon.get(asked)).json
+        self.assertEqual((told["verdict"], told["common"]), ("one_structure", "WN"), told)
+        self.assertIn("They have one structure: WN describes every recording", told["statement"])
+        self.assertEqual([each["label"] for each in told["by_condition"]], [f"{id}:gz" for id in ids])
+        self.assertEqual({each["model"] for each in told["ranking"]}, {"WN", "WN+GM"})
+        self.assertEqual(self.daemon.get("/v1/structures?of=" + ",".join(ids)).json, told, "the first channel")
+        for wrong in ("", "?of=", f"?of={ids[0]}", "?of=" + ",".join(ids * 5), f"?of={ids[0]},{ids[1]}:%25zz"):
+            self.problem(400, "invalid_argument", self.daemon.get("/v1/structures" + wrong), parameter="of")
+        self.problem(404, "not_found", self.daemon.get(asked + "x"))
+
+
 class Life(JobTest):
+    def test_the_daemon_says_how_many_jobs_run_at_a_time(self) -> None:
+        self.assertEqual(self.expect(200, self.daemon.get("/v1/workers")).json, {"workers": 1})
+
     def test_upload_queues_nothing_and_a_job_runs_to_its_result(self) -> None:
         jobs = self.daemon.items("/v1/jobs")
         recording = self.recording(1)

@@ -40,6 +40,15 @@ class Populations(DaemonTest):
         self.assertIn({"device": "unit-6", "sensor": "gyroscope", "axis": "z", "label": "static", "parameter": "N"}, found["outlying"])
         self.assertEqual(found["summary"]["verdict"], "One of 6 devices is not of the line: unit-6.")
         self.assertEqual(self.daemon.get("/v1/populations?model=Probe%207&sensor=accelerometer").json["rows"], [])
+        # It is the newest result of that device, and wants a look; of the others the recordings are.
+        latest = {name: self.daemon.get(f"/v1/devices/{name}/summary").json["latest"] for name in LEVELS}
+        said = latest["unit-6"]
+        self.assertEqual((said["kind"], said["id"], said["href"], said["level"]), ("population", "Probe 7", "/v1/populations?model=Probe%207", "look"))
+        self.assertTrue(said["verdict"].startswith("unit-6 is not of the line of the 6 devices of Probe 7, by N of gyroscope z, static"), said)
+        self.assertIsNone(said["recording"])
+        self.assertEqual({each["kind"] for name, each in latest.items() if name != "unit-6"}, {"characterise"})
+        [looked] = [each for each in self.daemon.items("/v1/attention?device=unit-6") if each["kind"] == "population"]
+        self.assertEqual((looked["verdict"], looked["href"], looked["channel"]), (said["verdict"], said["href"], None))
 
         address = f"http://127.0.0.1:{self.daemon.port}"
         served = self.driftlab("population", "--model", "Probe 7", "--server", address)

@@ -168,6 +168,14 @@ class Several(unittest.TestCase):
             states = [event.data["state"] for event in events(a, job) if event.type == "state"]
             self.assertEqual(states, ["queued", "running", "succeeded"])
 
+    def test_all_workers_are_those_of_every_process(self) -> None:
+        a = self.start("a", "--workers", "1")
+        self.assertEqual(a.get("/v1/workers").json, {"workers": 1})
+        worker = self.start("worker", "worker", "--threads", "3", "--workers", "3")
+        self.eventually("the worker is counted", lambda: a.get("/v1/workers").json == {"workers": 4})
+        worker.kill()
+        self.eventually("one that is gone is not", lambda: a.get("/v1/workers").json == {"workers": 1})
+
     def test_a_worker_works_and_has_no_api(self) -> None:
         a = self.start("a")
         worker = self.start("worker", "worker")

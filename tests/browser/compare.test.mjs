@@ -27,6 +27,10 @@ test('what is compared has a difference with its interval, and says whether one 
   const cells = await row.getByRole('cell').allInnerTexts();
   assert.match(cells[1], /no difference shown: [+\u2212]?\d+(\.\d+)? \[\u2212/, cells.join(' | '));
   assert.match(cells[2], /differs by \+\d+\.\d+ \[\d+\.\d+, \d+\.\d+\], 1\.5\d* \[1\.\d+, 1\.\d+\] times/, cells.join(' | '));
+  // The sentence is the daemon's, which tests what the names of the models ranked first would only compare.
+  const {statement} = await daemon.json(`/v1/structures?of=${ids.map(id => `${id}:gz%2520%255Bdeg%252Fs%255D`).join(',')}`);
+  assert.match(statement, /^(They have one structure|The structures differ|One structure)/);
+  assert.equal((await page.locator('.verdict').innerText()).slice(0, 60), statement.slice(0, 60));
   // The ratio is no surer than the two that make it: the distances of their ends on the logarithms, added in squares.
   const [first, second] = (await Promise.all(ids.slice(0, 2).map(id => daemon.json(`/v1/recordings/${id}/characterisation`)))).map(each => each.channels[0].result.allan);
   const wanted = Math.hypot(Math.log(second.ci95[0][1] / second.deviation[0]), Math.log(first.deviation[0] / first.ci95[0][0]));

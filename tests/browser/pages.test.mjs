@@ -1,5 +1,5 @@
 // Every page: nothing for axe to find in either theme, nothing in the console, nothing wider than a phone. With
-// $DRIFTLAB_SCREENS each is also pictured at 390, 1440 and 2560 px, light and dark, for a person to look at.
+// $DRIFTLAB_SCREENS each is also pictured at 390, 1440, 2560 and 3840 px, light and dark, for a person to look at.
 import assert from 'node:assert/strict';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
@@ -47,7 +47,7 @@ before(async () => {
   paths = {
     lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', 'device-many': '/devices/phone-08', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
     compare: `/compare?with=${ids[0]},${ids[2]},${model.id},sheet~L3G4200D~gyroscope`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
-    outages: '/outages', 'outages-new': '/outages/new', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
+    outages: '/outages', 'outages-new': '/outages/new', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, 'job-again': `/jobs/new?like=${regress.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
     model: `/models/${model.id}`, regressions: '/regressions', regression: `/regressions/${regress.id}`, record: '/record',
     populations: '/populations', population: `/populations/${line.model}`, 'device-line': `/devices/${line.devices[0]}`, 'data-sheets': '/data-sheets', 'data-sheet': `/data-sheets/${line.model}`,
     webhooks: '/webhooks', webhook: `/webhooks/${webhook.id}`, 'webhook-refused': `/webhooks/${refused.id}`, drives: '/drives', drive: `/drives/${drive.drive}`,
@@ -85,27 +85,31 @@ for (const colorScheme of ['light', 'dark']) {
   });
 }
 
-test('no page is wider than its screen, from 320 px, which is 1280 at 400 %, to 2560 px, and no line of text too long there', async () => {
+// Letters a line: those of a paragraph by the lines that it takes.
+async function tooLong(page, name) {
+  const long = await page.evaluate(() => [...document.querySelectorAll('main p')].filter(p => p.childElementCount === 0 && p.textContent.length > 100 && p.offsetParent).map(p => {
+    const range = document.createRange();
+    range.selectNodeContents(p);
+    const lines = new Set([...range.getClientRects()].map(rectangle => Math.round(rectangle.top))).size;
+    return [Math.round(p.textContent.length / lines), p.textContent.slice(0, 40)];
+  }).filter(([letters]) => letters > 90));
+  return long.map(([letters, text]) => `${name}: ${letters} letters a line: ${text}`);
+}
+
+test('no page is wider than its screen, from 320 px, which is 1280 at 400 %, to 3840 px, and no line of text too long', async () => {
   const page = await open(browser, daemon, '/', {viewport: {width: 320, height: 844}, absent: NOBODY});
   const wide = [];
   for (const [name, path] of Object.entries(paths)) {
     await page.setViewportSize({width: 320, height: 844});
     await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
     await settled(page);
-    for (const width of [320, 360, 390, 768, 1200, 2560]) {
+    for (const width of [320, 360, 390, 768, 1200, 2560, 3840]) {
       await page.setViewportSize({width, height: 844});
       await page.evaluate(() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 60)))));
       const is = await page.evaluate(() => document.documentElement.scrollWidth);
       if (is > width) wide.push(`${name} at ${width}: ${is}`);
+      if (width >= 2560) wide.push(...await tooLong(page, name));
     }
-    // Letters a line: those of a paragraph by the lines that it takes.
-    const long = await page.evaluate(() => [...document.querySelectorAll('main p')].filter(p => p.childElementCount === 0 && p.textContent.length > 100 && p.offsetParent).map(p => {
-      const range = document.createRange();
-      range.selectNodeContents(p);
-      const lines = new Set([...range.getClientRects()].map(rectangle => Math.round(rectangle.top))).size;
-      return [Math.round(p.textContent.length / lines), p.textContent.slice(0, 40)];
-    }).filter(([letters]) => letters > 90));
-    wide.push(...long.map(([letters, text]) => `${name}: ${letters} letters a line: ${text}`));
   }
   assert.deepEqual(wide, []);
   assert.deepEqual(page.loud, []);
@@ -273,6 +277,27 @@ test('a device’s page leads to its comparison and exports its model as the com
   await page.context().close();
 });
 
+test('a device’s page says whether one structure serves its conditions, and by which candidates', async () => {
+  const {structure, model_note: note} = await daemon.json('/v1/parameter-tables?device=phone-07&sensor=gyroscope&axis=z');
+  assert.equal(structure.by_condition.length, 2, 'at rest and turning');
+  const page = await open(browser, daemon, paths.device);
+  const said = await page.locator('.verdict small').innerText();
+  for (const sentence of [structure.statement, note].filter(Boolean)) assert.ok(said.includes(sentence.slice(0, 40)), `${sentence} | ${said}`);
+  const panel = page.locator('section.panel', {has: page.getByRole('heading', {name: 'One structure or several'})});
+  for (const name of new Set([structure.common, structure.ranking[0].model, ...structure.by_condition.map(one => one.model)])) await panel.getByRole('rowheader', {name: new RegExp(`^${name.replaceAll('+', '\\+')}( serves all)?$`)}).waitFor();
+  assert.equal(await panel.getByText('serves all').count(), 1);
+  assert.equal(await panel.getByRole('cell', {name: 'best', exact: true}).count(), 1);
+  // The table can be of any of them, and its address says so.
+  await page.getByLabel('model').selectOption('WN');
+  await page.waitForURL(/model=WN/);
+  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor({state: 'detached'});
+  assert.equal(await page.getByLabel('model').inputValue(), 'WN');
+  await page.goBack();
+  await page.locator('.pt').getByRole('columnheader', {name: /Gauss-Markov/}).first().waitFor();
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
 // What each report must say word by word. A sentence that sends the reader elsewhere has none of it.
 const MADE = {
   other: {algorithm: /algorithm version \d+/, seed: /seed \d+/, job: /job_[0-9A-Z]{26}/},
@@ -354,6 +379,18 @@ test('the margin of a regression is drawn at the ratio that is tolerated', async
   await page.context().close();
 });
 
+test('a figure of a regression says of which run it is', async () => {
+  // The document of a run has no id of its own; the figure's source and command once said "undefined".
+  const page = await open(browser, daemon, paths.regression);
+  await settled(page);
+  const figure = page.locator('section.panel', {has: page.getByRole('heading', {name: /^Allan deviation,/})}).first();
+  const [download] = await Promise.all([page.waitForEvent('download'), figure.getByRole('button', {name: 'SVG', exact: true}).click()]);
+  assert.match(readFileSync(await download.path(), 'utf8'), new RegExp(`driftlab \\d+\\.\\d+\\.\\d+, ${paths.regression.split('/').pop()}, algorithm`));
+  await figure.getByRole('button', {name: 'curl', exact: true}).click();
+  assert.ok((await page.evaluate(() => navigator.clipboard.readText())).includes(`/v1${paths.regression}`));
+  await page.context().close();
+});
+
 test('curl gets what it got, browsers get pages that forbid everything of others', async () => {
   const get = (path, headers = {}) => fetch(daemon.address + path, {headers});
   const html = {Accept: 'text/html,application/xhtml+xml,*/*;q=0.8'};
@@ -375,11 +412,66 @@ test('curl gets what it got, browsers get pages that forbid everything of others
   assert.equal((await get('/assets/none.js')).status, 404);
 });
 
+test('each result runs again with other settings, filled with its own, and what is refused stays typed', async () => {
+  const page = await open(browser, daemon, '/', {absent: [/\/v1\/jobs$/]});
+  const form = async (name, panel) => {
+    await page.goto(daemon.address + paths[name], {waitUntil: 'domcontentloaded'});
+    await page.locator('section.panel', {has: page.getByRole('heading', {name: panel})}).first().getByRole('button', {name: 'How computed'}).click();
+    await page.getByRole('dialog').getByRole('link', {name: 'Run again with other settings'}).click();
+    await page.getByRole('button', {name: 'Run', exact: true}).waitFor();
+    assert.equal(await page.getByRole('dialog').count(), 0, 'the drawer is closed');
+  };
+  const asked = async () => {
+    await page.getByRole('button', {name: 'Run', exact: true}).click();
+    await page.waitForURL(/\/jobs\/job_/);
+    const job = await daemon.json(`/v1/jobs/${page.url().split('/').pop()}`);
+    await daemon.json(`/v1/jobs/${job.id}/cancel`, {});
+    return job.request;
+  };
+  await form('recording', 'Allan deviation');
+  assert.equal(await page.getByLabel('models').inputValue(), 'WN, WN+GM, WN+RW');
+  await page.getByLabel('seed').fill('12');
+  await page.getByLabel('models').fill('WN, nonsense');
+  await page.getByRole('button', {name: 'Run', exact: true}).click();
+  await page.getByRole('alert').getByText(/nonsense/).waitFor();
+  assert.deepEqual([await page.getByLabel('seed').inputValue(), await page.getByLabel('models').inputValue()], ['12', 'WN, nonsense']);
+  await page.getByLabel('models').fill('WN, WN+RW');
+  const {inputs, parameters} = await asked();
+  assert.deepEqual([parameters.models, parameters.seed, inputs.recordings.length], [['WN', 'WN+RW'], 12, 3]);
+
+  await form('outage', 'Horizontal error by filter');
+  assert.deepEqual([await page.getByLabel('scenario').inputValue(), await page.getByLabel('runs').inputValue()], ['paper', '2']);
+  await page.getByLabel('scenario').selectOption('paper-nhc');
+  const outage = await asked();
+  assert.deepEqual([outage.inputs.scenario, outage.parameters.runs], ['paper-nhc', 2]);
+
+  await form('drive-simulate', /^Error in outages/);
+  assert.equal(await page.getByLabel('question').inputValue(), 'simulate');
+  await page.getByLabel('seed').fill('5');
+  const drive = await asked();
+  assert.deepEqual([drive.inputs.drive, drive.parameters.question, drive.parameters.seed], [paths.drive.split('/').pop(), 'simulate', 5]);
+
+  await form('regression', /^Allan deviation,/);
+  await page.getByLabel('alpha').fill('0.1');
+  const before = (await daemon.json(`/v1/jobs/${paths.regression.split('/').pop()}`)).request;
+  const regression = await asked();
+  assert.deepEqual([regression.parameters.alpha, regression.inputs.candidate], [0.1, before.inputs.candidate]);
+
+  await form('investigation', 'Checks');
+  await page.getByLabel('baseline').fill('{"kind": ');
+  await page.getByRole('button', {name: 'Run', exact: true}).click();
+  await page.getByText('Baseline is no JSON.').waitFor();
+  await page.getByLabel('baseline').fill('{"kind": "auto"}');
+  assert.deepEqual((await asked()).inputs, (await daemon.json(`/v1/jobs/${paths.job.split('/').pop()}`)).request.inputs, 'the same settings are the same job');
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
 if (process.env.DRIFTLAB_SCREENS) {
   test('pictures of every page', async () => {
     mkdirSync(process.env.DRIFTLAB_SCREENS, {recursive: true});
     for (const colorScheme of ['light', 'dark']) {
-      for (const width of [390, 1440, 2560]) {
+      for (const width of [390, 1440, 2560, 3840]) {
         const page = await open(browser, daemon, '/', {colorScheme, viewport: {width, height: 900}, absent: NOBODY});
         for (const [name, path] of Object.entries(paths)) {
           await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});

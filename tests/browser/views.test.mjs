@@ -217,6 +217,26 @@ test('what is found: recordings, conditions and beginnings of ids, on a narrow s
   await closed(page);
 });
 
+test('the page of jobs says how many run at a time', async () => {
+  const {workers} = await daemon.json('/v1/workers');
+  assert.ok(workers > 0);
+  const page = await open(browser, daemon, '/jobs');
+  await page.locator('.meta', {hasText: `${workers} worker${workers === 1 ? '' : 's'}`}).waitFor();
+  await closed(page);
+});
+
+test('a job that has ended says what became of it, step by step', async () => {
+  const made = await daemon.upload(csv(6000, 61), {device: 'stepwise', condition: 'static', rate_hz: RATE});
+  const job = await daemon.characterise(made.id);
+  const page = await open(browser, daemon, `/jobs/${job.id}`);
+  const steps = panel(page, 'Events').locator('tbody tr');
+  await steps.first().waitFor();
+  const states = await steps.locator('td:nth-child(2)').allInnerTexts();
+  assert.deepEqual([states[0], states.at(-1)], ['queued', 'succeeded']);
+  assert.equal(await steps.locator('td:last-child').last().innerText(), '1');
+  await closed(page);
+});
+
 test('addresses hold kind, label, parameter and finding', async () => {
   const page = await open(browser, daemon, '/jobs?kind=investigate');
   await page.getByRole('heading', {level: 1, name: 'Jobs'}).waitFor();

@@ -78,3 +78,17 @@ test('equal decades are equal, and a slope of -1/2 looks like one', async () => 
   const slope = -(area.y(5 / Math.sqrt(10)) - area.y(5)) / (area.x(10) - area.x(1));
   assert.ok(Math.abs(slope + 0.5) < 1e-6, String(slope));
 });
+
+test('an axis has round numbers and leads a value to its pixel and back', async () => {
+  const {decadeTicks, linear, logarithmic, ticksBetween} = await source('figure/scale.ts');
+  assert.deepEqual(ticksBetween(0, 10, 5), [0, 2, 4, 6, 8, 10]);
+  assert.deepEqual(ticksBetween(-0.31, 0.27, 4), [-0.2, 0, 0.2]);
+  assert.deepEqual(ticksBetween(0, 3725, 9), [0, 500, 1000, 1500, 2000, 2500, 3000, 3500]);
+  assert.deepEqual(ticksBetween(2, 2, 3), [2]);
+  assert.deepEqual(decadeTicks(0.2, 30, [1, 2, 5]), [0.2, 0.5, 1, 2, 5, 10, 20]);
+  const x = linear(2, 6, 100, 300);
+  assert.deepEqual([x(2), x(3), x(6), x.invert(150)], [100, 150, 300, 3]);
+  const y = logarithmic(0.1, 1000, 400, 0);
+  assert.ok([[0.1, 400], [1, 300], [1000, 0]].every(([value, pixel]) => Math.abs(y(value) - pixel) < 1e-9 && Math.abs(y.invert(pixel) / value - 1) < 1e-12));
+  assert.deepEqual([linear(5, 5, 0, 80)(5), linear(5, 5, 0, 80).invert(10)], [40, 5]);
+});

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <deque>
@@ -347,6 +348,38 @@ TEST(ProfileWithoutAName, IsNoneWhereNothingIsHidden) {
     const Report report = investigated(study_of([](std::size_t, std::uint64_t own) { return white(own); }, seed).study);
     EXPECT_TRUE(report.unnamed.empty()) << seed << ": " << told(report);
   }
+}
+
+TEST(SpectrogramOfInnovations, IsAPictureOfWhatChanges) {
+  const Made made = study_of(swells_with_temperature, 7);
+  const Report report = investigated(made.study);
+  ASSERT_EQ(report.figures.size(), 1U);
+  ASSERT_TRUE(report.figures.front().spectrogram);
+  const InnovationSpectrogram& picture = *report.figures.front().spectrogram;
+  const std::size_t bands = picture.f_hz.size();
+  EXPECT_EQ(picture.time_s.size(), 64U);
+  ASSERT_EQ(picture.log10_ratio.size(), picture.time_s.size() * bands);
+  std::size_t r = 0;
+  while (made.study.recordings.at(r).id != picture.recording) {
+    ++r;
+  }
+  // Cells in which the noise is loud against those in which it is not.
+  std::array<double, 2> sum{};
+  std::array<double, 2> count{};
+  for (std::size_t i = 0; i < picture.time_s.size(); ++i) {
+    const std::size_t loud = swelling(temperature(r, picture.time_s[i])) > 1.0 ? 1 : 0;
+    for (std::size_t k = 0; k < bands; ++k) {
+      sum.at(loud) += picture.log10_ratio[i * bands + k];
+      count.at(loud) += 1.0;
+    }
+  }
+  EXPECT_GT(sum[1] / count[1], sum[0] / count[0] + 0.05) << told(report);
+}
+
+TEST(SpectrogramOfInnovations, IsNoneWhereNothingIsLeft) {
+  const Report report = investigated(study_of([](std::size_t, std::uint64_t own) { return white(own); }, 20).study);
+  ASSERT_EQ(report.figures.size(), 1U);
+  EXPECT_FALSE(report.figures.front().spectrogram);
 }
 
 }  // namespace

@@ -239,6 +239,7 @@ class Everything(ClientTest):
         self.assertEqual(client.fit(fit["id"]), fit)
         self.assertTrue(client.parameter_table("all-07", axis="z").rows())
         self.assertIsInstance(client.trends("all-07", axis="z").rows(), list)
+        self.assertIn("recording", client.structure(first, (first, "gz"))["statement"])
         self.assertIn("two conditions", client.trends_text("all-07", axis="z"))
 
         self.assertIn("verdict", client.characterisation(first)["channels"][0]["summary"])

@@ -47,6 +47,7 @@ const PAGES: Record<string, Load> = {
   webhooks: lists(pages => pages.Webhooks),
   'webhooks/*': lists(pages => pages.Webhook),
   jobs: lists(pages => pages.Jobs),
+  'jobs/new': lists(pages => pages.RunAgain),
   'jobs/*': lists(pages => pages.Job),
   upload: lists(pages => pages.Upload),
   record: () => import('./routes/record').then(pages => pages.Record),

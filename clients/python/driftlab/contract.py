@@ -27,7 +27,7 @@ class Attention(TypedDict):
     level: Literal['look', 'wrong']
     # One sentence that a person could act on.
     verdict: str
-    # Of the job.
+    # Of the job; population: a device that its newest characterisation shows not to be of the line of its model.
     kind: str
     # Where the result is read.
     href: str
@@ -592,8 +592,10 @@ class DeviceSummaryCondition(TypedDict):
 class DeviceSummaryLatest(TypedDict):
     """The newest result that has a verdict; null where there is none."""
 
-    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress']
-    # Of what the result is of: the recording, the investigation, the evaluation or the regression.
+    # Of the job; population: the device is not of the line of its model, as its newest characterisation shows.
+    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress', 'drive_evaluation', 'population']
+    # Of what the result is of: the recording, the investigation, the evaluation or the regression; of a population the
+    # model.
     id: str
     # Where the result is read.
     href: str
@@ -1368,6 +1370,11 @@ class GetSchemaAnswerCase(TypedDict):
     text: str
 
 
+class GetWorkersAnswer(TypedDict):
+    # Jobs that run at a time; more wait.
+    workers: int
+
+
 class HealthAnswer(TypedDict):
     status: Literal['alive']
     version: str
@@ -1499,6 +1506,9 @@ class InvestigationFigures(TypedDict):
     spectrum: InvestigationFiguresSpectrum
     # Means over stretches of time of one recording; `effect` is what the extended model puts into the mean.
     course: InvestigationFiguresCourse
+    # The innovations of the recording whose noise changes most, where noise still changes beside the findings: density
+    # over that of white noise, by time and frequency.
+    spectrogram: NotRequired[InvestigationFiguresSpectrogram]
 
 
 class InvestigationFiguresAllan(TypedDict):
@@ -1525,6 +1535,19 @@ class InvestigationFiguresInnovation(TypedDict):
     after: float | None
     q025: float | None
     q975: float | None
+
+
+class InvestigationFiguresSpectrogram(TypedDict):
+    """The innovations of the recording whose noise changes most, where noise still changes beside the findings: density
+    over that of white noise, by time and frequency."""
+
+    recording: str
+    # Middle of each cell from the first sample of the file.
+    time_s: list[float | None]
+    # Mean frequency of each band, rising.
+    f_hz: list[float | None]
+    # One row per time, one number per band: 0 as expected, 1 ten times as much.
+    log10_ratio: list[list[float | None]]
 
 
 class InvestigationFiguresSpectrum(TypedDict):
@@ -2849,8 +2872,7 @@ class ParameterTable(TypedDict):
     model: str | None
     # The condition of the row that the others are compared with, in its compact form.
     reference: str | None
-    # Whether one structure serves every condition; absent where that is not known of exactly these recordings.
-    structure: NotRequired[ParameterTableStructure]
+    structure: NotRequired[PooledSensorStructure]
     # How the model of the table and the structure of the statement are both right; null where they are one.
     model_note: str | None
     pooling: ParameterTablePooling
@@ -2947,15 +2969,6 @@ class ParameterTableSheetComparisonFigure(TypedDict):
     verdict: Literal['agrees', 'above', 'below', None]
 
 
-class ParameterTableStructure(TypedDict):
-    """Whether one structure serves every condition; absent where that is not known of exactly these recordings."""
-
-    verdict: Literal['one_structure', 'changes', 'undecided']
-    # The structure that the statement speaks of.
-    common: str
-    statement: str
-
-
 class ParameterTables(TypedDict):
     """The tables of every axis of a sensor that has results."""
 
@@ -3014,6 +3027,8 @@ class PooledSensorCondition(TypedDict):
 
 
 class PooledSensorStructure(TypedDict):
+    """Whether one structure serves every condition."""
+
     verdict: Literal['one_structure', 'changes', 'undecided']
     statement: str
     # The smallest structure that serves every condition, whole or in part.
@@ -3024,7 +3039,9 @@ class PooledSensorStructure(TypedDict):
     dof: NotRequired[float | None]
     # By how much its criterion exceeds the best in the condition that shows it best; above 6 the structure changes.
     excess: float | None
+    # By the criterion summed over the conditions, the best first; null where a condition lacks a fit.
     ranking: list[PooledSensorStructureRankingItem]
+    # The best of each condition.
     by_condition: list[PooledSensorStructureByConditionItem]
 
 
@@ -4349,6 +4366,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/schemas/{name}', (), (), ('application/schema+json', 'application/json')),
     'getCounts': Operation(
         'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
+    'getWorkers': Operation(
+        'GET', '/v1/workers', (), (), ('application/json',)),
     'listAttention': Operation(
         'GET', '/v1/attention', ('limit', 'cursor', 'sort', 'device', 'since'), (), ('application/json',)),
     'search': Operation(
@@ -4451,6 +4470,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/parameter-tables',
         ('device', 'sensor', 'axis', 'method', 'model', 'reference'),
         ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown', 'text/x-latex')),
+    'getStructure': Operation(
+        'GET', '/v1/structures', ('of',), (), ('application/json',)),
     'getTrends': Operation(
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),

@@ -48,6 +48,25 @@ std::vector<unsigned char> places_of(const StudyRecording& recording, const std:
   return gone;
 }
 
+/// Of the expected number of blocks, in units of the number that was seen: their number is Poisson (Garwood's
+/// interval). `count`: of blocks of equal length, whose samples would scatter as much.
+Interval count_interval(double count) {
+  return {0.5 * chi_squared_quantile(0.025, 2.0 * count) / count,
+          0.5 * chi_squared_quantile(0.975, 2.0 * count + 2.0) / count};
+}
+
+/// Of the mean length of the blocks that a logger writes twice, of which `blocks` were seen.
+Interval length_interval(double mean, double variance, double blocks) {
+  // Fewer do not tell how much lengths scatter; they are taken to scatter as exponential ones do. Chosen, not measured.
+  constexpr double kTells = 4.0;
+  if (blocks < kTells) {
+    return {std::max(1.0, 2.0 * blocks * mean / chi_squared_quantile(0.975, 2.0 * blocks)),
+            2.0 * blocks * mean / chi_squared_quantile(0.025, 2.0 * blocks)};
+  }
+  const double half = student_quantile(0.975, blocks - 1.0) * std::sqrt(std::max(variance, 1.0) / blocks);
+  return {std::max(1.0, mean - half), mean + half};
+}
+
 FaultyRecordings describe(const Study& study, const std::vector<Copies>& copies) {
   FaultyRecordings fault;
   std::vector<std::string> ids;
@@ -77,14 +96,11 @@ FaultyRecordings describe(const Study& study, const std::vector<Copies>& copies)
   }
   const double mean = repeated / blocks;
   const double variance = blocks > 1.0 ? (square - blocks * mean * mean) / (blocks - 1.0) : 0.0;
-  const double sd_mean = std::sqrt(std::max(variance, 1.0) / blocks);
   const double fraction = repeated / samples;
-  const double sd_fraction = std::sqrt(blocks * (mean * mean + variance)) / samples;  // their number is Poisson
+  const Interval of_count = count_interval(repeated * repeated / std::max(square, blocks * mean * mean));
   fault.parameters = {
-      {"fraction",
-       {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), std::min(1.0, fraction + 1.96 * sd_fraction)}},
-       units::one({})},
-      {"mean_length", {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean}}, units::one({})}};
+      {"fraction", {fraction, {fraction * of_count.low, std::min(1.0, fraction * of_count.high)}}, units::one({})},
+      {"mean_length", {mean, length_interval(mean, variance, blocks)}, units::one({})}};
   fault.sentence = list_of_names(ids) + ": " + in_digits(blocks) +
                    (blocks > 1.0 ? " blocks of samples were written twice" : " block of samples was written twice") +
                    ", first at " + in_digits(first_s) + " s of " + ids.front() +

@@ -16,8 +16,9 @@ constexpr double kStriking = 0.2;  ///< below this it is ranked last
 
 std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
-  double weight = 0.0;
+  // The recording that tells the step best. The others add nothing: the same multiples are written the same way in all.
   double step = 0.0;
+  double sd = 0.0;
   double coarseness = 0.0;
   for (std::size_t r = 0; r < group.members.size(); ++r) {
     const Channel& channel = *group.members[r].channel;
@@ -28,17 +29,17 @@ std::vector<Evidence> find(const ChannelGroup& group) {
     if (!(lattice.step > 0.0) || si < kNoticed * noise) {
       continue;
     }
-    const double sd = std::max(lattice.step_sd, 1e-7 * lattice.step) * channel.unit.factor;
+    const double own_sd = std::max(lattice.step_sd, 1e-7 * lattice.step) * std::fabs(channel.unit.factor);
+    if (evidence.members.empty() || own_sd < sd) {
+      step = si;
+      sd = own_sd;
+    }
     evidence.members.push_back(r);
-    weight += 1.0 / (sd * sd);
-    step += si / (sd * sd);
     coarseness = std::max(coarseness, si / noise);
   }
   if (evidence.members.empty()) {
     return {};
   }
-  step /= weight;
-  const double sd = std::max(1.0 / std::sqrt(weight), 1e-7 * step);
   evidence.score = coarseness < kStriking ? 12.0 : 1000.0 * coarseness;
   evidence.gain = evidence.score;
   evidence.shape = coarseness;

@@ -77,19 +77,32 @@ Near near(const std::vector<double>& power, std::size_t m, double f, double widt
   return mean;
 }
 
+/// What is there for each of what the shape lets through, near `f`.
+double ratio_of(const Near& near) { return near.power / near.shape; }
+
 bool is_running_mean(const std::vector<double>& power, std::size_t m, double rounding) {
   // [cycles per sample] to either side of a zero of the mean of m samples: a few ordinates of the periodogram. Chosen,
   // not measured.
   constexpr double kAboutZero = 0.006;
   // Chosen, not measured: what is left at a true zero is rounding, whose power is taken off before.
   constexpr double kDeep = 0.02;
+  // [cycles per sample] from a zero: the flank, where the shape has risen beyond rounding and beyond what leaks into
+  // the zero itself, and a low-pass that is as deep there has not. Chosen, not measured.
+  constexpr double kFlank = 0.025;
+  constexpr double kAboutFlank = 0.008;
   for (std::size_t k = 1; 2 * k <= m; ++k) {
     const double zero = static_cast<double>(k) / static_cast<double>(m);
     const Near at = near(power, m, zero, kAboutZero, rounding);
     const Near midway = near(power, m, zero - 0.5 / static_cast<double>(m), 0.02, rounding);
-    const double ratio = at.power / at.shape / (midway.power / midway.shape);
-    if (!(midway.power > 0.0) || at.power > kDeep * midway.power || !(ratio > 0.5) || !(ratio < 2.0)) {
+    const Near flank = near(power, m, zero - kFlank, kAboutFlank, rounding);
+    if (!(midway.power > 0.0) || at.power > kDeep * midway.power) {
       return false;
+    }
+    for (const Near& place : {at, flank}) {
+      const double ratio = ratio_of(place) / ratio_of(midway);
+      if (!(ratio > 0.5) || !(ratio < 2.0)) {
+        return false;
+      }
     }
   }
   return true;

@@ -2,6 +2,7 @@
 
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/consistency/reference_clock.hpp"
+#include "core/investigate/report/shared_misfit.hpp"
 #include "core/process/constant_offset.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 namespace driftlab::investigate {
 namespace {
@@ -16,9 +18,6 @@ namespace {
 /// Times the longest recording: a time beyond it is at the end of its search and not measured by the data. Chosen, not
 /// measured.
 constexpr double kMostRecords = 20.0;
-
-/// Chosen well below the level of a check, for a doubt takes a finding back. Not measured.
-constexpr double kClear = 0.001;
 
 bool is_fact(const Cause& cause) { return cause.as<FileFact>() != nullptr || cause.as<RecordingFault>() != nullptr; }
 
@@ -200,11 +199,26 @@ const StudyRecording* suspect_of(const Evidence& evidence, const ChannelGroup& g
   return nullptr;
 }
 
+/// Values that stand out of the noise, and no other distribution of it.
+bool are_gross_values(const Cause& cause) {
+  const NoiseTails* const tails = cause.as<NoiseTails>();
+  return tails != nullptr && tails->added_variance != nullptr;
+}
+
+/// Gross values that stand out of noise of so many times the power, as they do of the model's.
+bool stand_out_of(const Evidence& evidence, const std::vector<double>& powers) {
+  constexpr double kDeviations = 4.0;  // Chosen: one of 16,000 normal values lies beyond.
+  const double most = powers.empty() ? 1.0 : *std::max_element(powers.begin(), powers.end());
+  return are_gross_values(*evidence.cause) && evidence.shape > kDeviations * std::sqrt(std::max(1.0, most));
+}
+
 /// A profile that shows itself predicts as much.
-bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& unnamed,
-              std::size_t channels) {
+bool rivalled(const Evidence& evidence, const ChannelGroup& group, const SharedMisfit& shared,
+              const std::vector<UnnamedFinding>& unnamed, std::size_t channels) {
   return std::any_of(unnamed.begin(), unnamed.end(), [&](const UnnamedFinding& one) {
-    return one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) &&
+    const bool of_power = one.effect.kind == UnnamedKind::Variance;
+    return !shared.holds(one) && !(of_power && stand_out_of(evidence, one.effect.value)) &&
+           one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) &&
            shows_itself(one, channels) && one.heldout_gain > kShare * std::max(evidence.heldout_gain, 0.0);
   });
 }
@@ -243,11 +257,30 @@ bool mean_is_surpassed(const Evidence& evidence, const ChannelGroup& group, cons
          predicts_more(instead, group, UnnamedKind::Mean, together);
 }
 
-/// Noise that still changes takes every finding of noise back. A mean effect is taken back by what a mean can show
-/// in, if it is a rival by its size.
-bool speaks_against(const Remainder& remainder, const Evidence& evidence) {
-  return evidence.cause->as<MeanEffect>() == nullptr ||
-         (!remainder.of_power_alone && remainder.observed > kShare * std::max(evidence.heldout_gain, 0.0));
+/// The test that a remainder is of: the end of its id.
+std::string_view test_of(const Remainder& remainder) {
+  return std::string_view(remainder.id).substr(remainder.id.rfind('.') + 1);
+}
+
+/// Noise that still changes takes a finding of noise back. A mean effect is taken back by what a mean can show in, if
+/// it is a rival by its size, and a difference beside a spectrum that no recording has as the model does by what is one
+/// too. Noise of another power makes gross values likelier by no more than it is likelier itself, in all recordings
+/// together.
+bool speaks_against(const Remainder& remainder, const std::vector<Remainder>& all, const Evidence& evidence,
+                    const SharedMisfit& shared) {
+  const double gain = std::max(evidence.heldout_gain, 0.0);
+  const bool is_rival = remainder.observed > kShare * gain;
+  if (evidence.cause->as<MeanEffect>() != nullptr) {
+    return !remainder.of_power_alone && is_rival;
+  }
+  if (are_gross_values(*evidence.cause)) {
+    double together = 0.0;
+    for (const Remainder& other : all) {
+      together += other.channel == remainder.channel && test_of(other) == test_of(remainder) ? other.observed : 0.0;
+    }
+    return together > gain;
+  }
+  return !shared.holds(remainder) && (!shared.of_spectrum() || is_rival);
 }
 
 /// Whether two findings are of the same thing: the mean, or the level of the noise.
@@ -265,9 +298,23 @@ const Evidence* in_shadow_of(const Evidence& evidence, const std::vector<Evidenc
   return larger == found.end() ? nullptr : &*larger;
 }
 
+/// Checks that fail, with the baseline and with the extended model, without those that all recordings share.
+struct Failing {
+  std::size_t before = 0;
+  std::size_t after = 0;
+};
+Failing failing_of(const SharedMisfit& shared, const Report& report) {
+  Failing failing{report.failed_before, report.failed_after};
+  for (const Check& check : report.checks) {
+    failing.before -= check.failed && shared.holds(check) ? 1 : 0;
+    failing.after -= check.failed_after && shared.holds(check) ? 1 : 0;
+  }
+  return failing;
+}
+
 /// Why one finding is not earned; empty: it is.
 std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& means,
-                     const std::vector<Remainder>& remains, const Report& report) {
+                     const SharedMisfit& shared, const std::vector<Remainder>& remains, const Report& report) {
   // Failed checks that take a finding back. Chosen, not measured: one or two may fail beside a true cause.
   constexpr std::size_t kFewest = 3;
   if (at_bound(evidence, group)) {
@@ -288,12 +335,13 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
   if (const Check* const check = not_mended(evidence, group, report); check != nullptr) {
     return "with it in the model " + check->title + " of " + check->recording + " still fails";
   }
-  if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
-    return std::to_string(report.failed_after) + " checks still fail with it";
+  if (const Failing failing = failing_of(shared, report);
+      failing.after >= kFewest && 2 * failing.after >= failing.before) {
+    return std::to_string(failing.after) + " checks still fail with it";
   }
   const auto left = std::find_if(remains.begin(), remains.end(), [&](const Remainder& remainder) {
     return remainder.channel == group.column && remainder.in_time_or_frequency && remainder.p_study < kClear &&
-           speaks_against(remainder, evidence);
+           speaks_against(remainder, remains, evidence, shared);
   });
   if (left != remains.end()) {
     return "with it in the model the noise of " + group.column + " still changes";
@@ -347,8 +395,9 @@ void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std
     if (is_fact(*evidence.cause)) {
       continue;
     }
-    evidence.doubt = doubt_of(evidence, groups[evidence.group], means[evidence.group], remains, report);
-    if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], instead.beside, groups.size())) {
+    const SharedMisfit shared(evidence, groups[evidence.group], remains, instead.beside);
+    evidence.doubt = doubt_of(evidence, groups[evidence.group], means[evidence.group], shared, remains, report);
+    if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], shared, instead.beside, groups.size())) {
       evidence.doubt = "a profile that has no name predicts the recordings beside it";
     }
     if (evidence.doubt.empty() && level_is_surpassed(evidence, groups[evidence.group], instead.instead)) {

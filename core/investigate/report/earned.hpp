@@ -19,11 +19,14 @@
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
 ///     a mean effect is doubted by a change that a mean can make, and by none that shows less than a third of its gain;
+///     gross values by none that gains less than they do;
 ///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;
 ///   - a profile without a name (unnamed/unnamed_search.hpp) of what the finding is of (the mean, the level or the
 ///     spectrum of the noise) shows itself and predicts at least a third as much as the finding does; of tails, a
-///     profile of the mean too, for what a mean displaces lies in the tails.
-/// Facts of a file and faults of a recording are never doubted.
+///     profile of the mean too, for what a mean displaces lies in the tails; of gross values none of the power, where
+///     they stand out of its loudest bin by four deviations.
+/// What all recordings of a channel show is no doubt of a difference between them (shared_misfit.hpp). Facts of a file
+/// and faults of a recording are never doubted.
 #include "core/investigate/report/remains.hpp"
 #include "core/investigate/report/report.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 /// What the figures of an investigation show of one channel, once for all its findings and over all its recordings.
 ///
-/// There are four views:
+/// There are five views:
 /// - Scales: the Haar wavelet deviation by scale, from coefficients that do not overlap and whose squares are nearly
 ///   independent, with the 95 % band of a chi-square of as many degrees of freedom.
 /// - Ratios: the wavelet variance of the innovations over that of a right model, which is what the checks judge, with
@@ -10,6 +10,8 @@
 ///   bins of equal width. Beside it stand the largest single ordinate of each bin, which a mean would hide, and the
 ///   height that the largest of all ordinates exceeds by chance in one spectrum of twenty.
 /// - Course: means over at most 200 stretches of time of one recording, the first that a finding names.
+/// - Spectrogram of the innovations: of the recording whose noise changes most, where it still does beside the findings
+///   (innovation_spectrogram.hpp).
 ///
 /// "Before" is the error under the baseline that knows of no effect. "After" is the error without every mean effect
 /// that was found, compared with the noise of the extended model. Causes that change the level or distribution of the

@@ -168,6 +168,7 @@ void wavelet_checks(const ChannelGroup::Member& member, const Series& e, const s
     check.p = std::min(1.0, 2.0 * std::min(check.p, 1.0 - check.p));
     check.excess = std::max(0.0, 0.5 * (x - count - count * std::log(std::max(1e-12, x / count))) - 0.5);
     check.scale_s = length * dt_s;
+    check.of_spectrum = true;
     check.title = "wavelet variance at " + significant(length * dt_s) + " s";
     for (double* const value : {&check.observed, &check.q025, &check.median, &check.q975}) {
       *value /= count;  // as a ratio to the simulated variance
@@ -295,7 +296,10 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
       const double share = data.colour.band_limited() ? std::min(1.0, data.colour.corner_hz * data.dt_s) : 1.0;
+      const std::size_t before = checks.size();
       add("spectrum", "spectrum in sixteen bands", {band_statistic(e, share), 15.0});
+      std::for_each(checks.begin() + static_cast<std::ptrdiff_t>(before), checks.end(),
+                    [](Check& check) { check.of_spectrum = true; });
     }
     wavelet_checks(member, e, data.used[r], data.dt_s, data.given ? 1.0 : all.mean_square, checks);
     Check tails;

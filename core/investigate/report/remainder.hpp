@@ -9,6 +9,9 @@ namespace driftlab::investigate {
 /// Departures with a p_study below this level are reported.
 inline constexpr double kShown = 0.003;
 
+/// Below this one a departure may take a finding back. Chosen well below the level of a check, not measured.
+inline constexpr double kClear = 0.001;
+
 /// One departure.
 struct Remainder {
   std::string id;  ///< of its check
@@ -19,6 +22,7 @@ struct Remainder {
   double p_study = 1.0;
   bool in_time_or_frequency = false;  ///< bursts, lines and changes: what a named cause should have taken away
   bool of_power_alone = false;        ///< a mean, however it moves, does not show in it
+  double period_s = 0.0;              ///< of power that swells and fades; 0: it does not
   bool follows_changes = false;       ///< noise that changes in time shows in it too: told where nothing changes
   std::string sentence;               ///< where it is, in words
 };

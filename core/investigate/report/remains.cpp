@@ -4,6 +4,7 @@
 #include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/investigate/report/dependence.hpp"
+#include "core/investigate/report/uneven_codes.hpp"
 #include "core/process/distributions.hpp"
 #include "core/process/random.hpp"
 
@@ -225,9 +226,10 @@ Remainder line_in_variance(const std::vector<double>& score, const std::vector<u
   for (std::size_t k = kFirst; k + 1 < z.size() && variance > 0.0; ++k) {
     const double surprise = std::norm(z[k]) / static_cast<double>(n) / variance;
     if (surprise > best.observed) {
+      const double f_hz = static_cast<double>(k) / (static_cast<double>(n) * dt_s);
       best.observed = surprise;
-      best.sentence = name + ": the noise swells and fades at " +
-                      three_digits(static_cast<double>(k) / (static_cast<double>(n) * dt_s)) + " Hz";
+      best.period_s = 1.0 / f_hz;
+      best.sentence = name + ": the noise swells and fades at " + three_digits(f_hz) + " Hz";
     }
   }
   return best;
@@ -346,6 +348,9 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     list.back().follows_changes = true;
   }
   keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
+  if (Remainder codes = uneven_codes(group, data); codes.observed > 0.0) {
+    keep(list, std::move(codes), nullptr, group, "codes", false);
+  }
   return list;
 }
 

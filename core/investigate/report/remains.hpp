@@ -15,6 +15,7 @@
 ///   deviation.
 /// - Lines in the variance. x is the periodogram of the squared scores less their mean, over its expectation.
 /// - Skewness. x = z^2/2 of the third moment of the innovations themselves, cut at six standard deviations.
+/// - Codes that do not come alike: report/uneven_codes.hpp.
 /// - Dependence, the distribution of means and loudness that axes share: report/dependence.hpp.
 /// - Coherence. Between two axes of one recording x = m |C|^2 in dyadic bands of m ordinates, of innovations cut at
 ///   four standard deviations.

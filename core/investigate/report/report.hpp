@@ -33,6 +33,7 @@ struct Check {
   bool failed = false;          ///< p_adjusted is below 0.05
   double excess = 0.0;          ///< log likelihood that the misfit it shows is worth [nat], 0 for checks of causes
   bool of_slow_misfit = false;  ///< what mean effects and slow noise explain
+  bool of_spectrum = false;     ///< how power lies over frequencies or scales, all of a recording together
   double scale_s = 0.0;         ///< of a wavelet variance; 0 for others
   double observed_after = 0.0;  ///< the same under the extended model
   double p_after = 1.0;
@@ -70,6 +71,15 @@ struct InnovationRatio {
   double low = 0.0, high = 0.0;  ///< where 95 % of right models lie
 };
 
+/// The density of innovations over that of white ones, by time and frequency (core/investigate/report/
+/// innovation_spectrogram.hpp).
+struct InnovationSpectrogram {
+  std::string recording;
+  std::vector<double> time_s;       ///< from the first sample of the file
+  std::vector<double> f_hz;         ///< rising
+  std::vector<double> log10_ratio;  ///< cells x bands, cell by cell; NaN: no sample there
+};
+
 /// What the figures of a channel show (core/investigate/report/figures.hpp).
 struct ChannelFigures {
   std::string channel;
@@ -80,7 +90,8 @@ struct ChannelFigures {
   std::vector<InnovationRatio> ratios;
   std::vector<double> f_hz, density_before, density_after, highest_before, highest_after, chance;  ///< [SI^2/Hz]
   Band density_baseline;
-  std::vector<double> time_s, error, effect;  ///< [SI]; effect: what was taken off
+  std::vector<double> time_s, error, effect;         ///< [SI]; effect: what was taken off
+  std::optional<InnovationSpectrogram> spectrogram;  ///< where noise still changes in time or frequency
 };
 
 /// Allan deviation of a channel at one averaging time [SI].

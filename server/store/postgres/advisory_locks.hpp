@@ -24,6 +24,19 @@ inline constexpr std::array<std::string_view, 3> kTakeDuty = {
     "SELECT pg_try_advisory_lock(1685218934, hashtext(current_schema()))::INT",
     "SELECT pg_try_advisory_lock(1685218935, hashtext(current_schema()))::INT"};
 
+/// The workers of a process: each holds one of the numbers from 1685218936 on, the first of them the first, together
+/// with others. All rows of these locks are all workers. ?1 how many.
+inline constexpr std::string_view kTakeWorkers =
+    "SELECT count(pg_try_advisory_lock_shared(1685218936 + i, hashtext(current_schema())))::INT FROM "
+    "generate_series(0, "
+    "CAST(?1 AS INT) - 1) AS i";
+inline constexpr std::string_view kCountWorkers =
+    "SELECT count(*)::INT FROM pg_locks WHERE locktype = 'advisory' AND granted AND objsubid = 2 AND database = "
+    "(SELECT "
+    "oid FROM pg_database WHERE datname = current_database()) AND classid::BIGINT BETWEEN 1685218936 AND 1685219191 "
+    "AND "
+    "objid::BIGINT = hashtext(current_schema())::BIGINT & 4294967295";
+
 /// Idempotency keys under way; one number of 64 bits each, ?1 the key.
 inline constexpr std::string_view kTakeKey =
     "SELECT pg_try_advisory_lock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";

@@ -31,6 +31,14 @@ Result<bool> is_granted(PostgresConnection& connection, std::string_view sql, st
   return *row && statement.integer(0) != 0;
 }
 
+/// How many are held.
+Result<std::int64_t> hold_workers(PostgresConnection& connection, int count) {
+  Statement statement = connection.prepare(kTakeWorkers);
+  statement.bind(count);
+  const auto row = statement.step();
+  return row ? Result<std::int64_t>(*row ? statement.integer(0) : 0) : fail(row.error());
+}
+
 Result<std::unique_ptr<PostgresConnection>> open_listener(const ConnectionPool::Opener& open) {
   auto connection = open();
   if (!connection) {
@@ -75,6 +83,7 @@ Status PostgresCoordination::connect() {
   for (const std::string& key : keys_) {
     (void)is_granted(*connection_, kTakeKey, key);
   }
+  (void)hold_workers(*connection_, workers_);
   return {};
 }
 
@@ -110,6 +119,24 @@ void PostgresCoordination::give_back_key(std::string_view key) {
   if (connection_) {
     (void)is_granted(*connection_, kGiveBackKey, key);
   }
+}
+
+void PostgresCoordination::offer_workers(int count) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  workers_ = count;
+  // What a connection that was made just now holds already counts once.
+  if (connect()) {
+    (void)hold_workers(*connection_, workers_);
+  }
+}
+
+Result<int> PostgresCoordination::workers() {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (Status there = connect(); !there) {
+    return fail(there.error());
+  }
+  const auto counted = connection_->query_integer(kCountWorkers);
+  return counted ? Result<int>(static_cast<int>(counted->value_or(0))) : fail(counted.error());
 }
 
 void PostgresCoordination::tell(std::string_view words) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Coordination by PostgreSQL: duties and keys are advisory locks of one connection, hints are notifications
+/// Coordination by PostgreSQL: duties, keys and workers are advisory locks of one connection, hints are notifications
 /// (LISTEN, NOTIFY) that a second one hears.
 ///
 /// Both connections must reach the server directly: a pooler that hands connections on by the transaction drops locks
@@ -34,12 +34,14 @@ class PostgresCoordination final : public Coordination {
   [[nodiscard]] bool has_duty(Duty duty) override;
   [[nodiscard]] Result<bool> take_key(std::string_view key) override;
   void give_back_key(std::string_view key) override;
+  void offer_workers(int count) override;
+  [[nodiscard]] Result<int> workers() override;
   void tell(std::string_view words) override;
   void listen(Hints hints) override;
   void stop() override;
 
  private:
-  /// The connection of the locks, there or made anew; keys that are held are taken again then. Errors: Io.
+  /// The connection of the locks, there or made anew; keys and workers are held again then. Errors: Io.
   [[nodiscard]] Status connect();
   void hear(const std::stop_token& stop, const Hints& hints);
   void pass_on(const Hints& hints, const std::string& payload) const;
@@ -52,6 +54,7 @@ class PostgresCoordination final : public Coordination {
   std::chrono::steady_clock::time_point not_before_{};
   std::array<bool, 3> duties_{};
   std::set<std::string, std::less<>> keys_;
+  int workers_ = 0;
   std::jthread hearing_;
 };
 

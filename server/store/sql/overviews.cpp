@@ -17,6 +17,9 @@ constexpr std::string_view kEndedSince =
     "WHERE finished_at >= ? AND kind <> 'pool'";
 constexpr std::string_view kSelectVerdict = "SELECT " DRIFTLAB_VERDICT_COLUMNS " FROM verdicts";
 constexpr std::string_view kForgetRecording = "DELETE FROM verdicts WHERE recording_id = ?";
+/// What the devices of a model said of one of them.
+constexpr std::string_view kForgetLine =
+    "DELETE FROM verdicts WHERE device_id = ? AND recording_id IS NULL AND channel = ?";
 /// ?2 the job. A result that speaks of no device by itself is that of the only one which its job names.
 constexpr std::string_view kInsertVerdict =
     "INSERT INTO verdicts (id, job_id, device_id, recording_id, channel, level, verdict, created_at, seal) VALUES (?1, "
@@ -78,9 +81,15 @@ Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const Verdic
 
 Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results, UtcMicros now) {
   for (ResultVerdict made : results.verdicts) {
-    if (!made.recording_id.empty()) {
-      if (Status forgotten = connection.prepare(kForgetRecording).bind(made.recording_id).run(); !forgotten) {
-        return forgotten;
+    const bool of_line = made.recording_id.empty() && !made.channel.empty();
+    if (of_line || !made.recording_id.empty()) {
+      Status forgotten = of_line ? connection.prepare(kForgetLine).bind(made.device_id, made.channel).run()
+                                 : connection.prepare(kForgetRecording).bind(made.recording_id).run();
+      if (!forgotten || made.verdict.empty()) {
+        if (!forgotten) {
+          return forgotten;
+        }
+        continue;
       }
     }
     made.id = made.id.empty() ? make_id("att", now) : made.id;

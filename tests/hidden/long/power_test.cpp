@@ -1,6 +1,7 @@
 /// The sections of tests/hidden/RESULTS.md: power, confusion, interval coverage and false alarms of `investigate` on
 /// its own simulator. Run by ./tests/run.sh --long, or by itself with DRIFTLAB_HIDDEN_SEEDS (studies per cell),
-/// DRIFTLAB_HIDDEN_PAIRS and DRIFTLAB_HIDDEN_NULLS.
+/// DRIFTLAB_HIDDEN_PAIRS and DRIFTLAB_HIDDEN_NULLS. DRIFTLAB_HIDDEN_ONLY holds names of causes, apart by commas, to
+/// look at these alone; what was missed is told with its seed on standard output.
 #include "core/investigate/investigate.hpp"
 #include "tests/accuracy/section.hpp"
 #include "tests/hidden/reported.hpp"
@@ -16,6 +17,7 @@
 #include <ctime>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace driftlab::hidden {
@@ -27,6 +29,19 @@ std::size_t number_from(const char* name, std::size_t otherwise) {
   const char* const text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): tests run one thread
   return text == nullptr ? otherwise : static_cast<std::size_t>(std::strtoul(text, nullptr, 10));
 }
+
+bool asked_for(std::string_view cause) {
+  const char* const text = std::getenv("DRIFTLAB_HIDDEN_ONLY");  // NOLINT(concurrency-mt-unsafe): tests run one thread
+  return text == nullptr || ("," + std::string(text) + ",").find("," + std::string(cause) + ",") != std::string::npos;
+}
+
+/// Causes that the registry did not begin with: what clocks, drivers, loggers and references do, and oscillations. More
+/// is not asked of them than to be named in 90 % where an oracle sees them well.
+const std::set<std::string, std::less<>> kAdded = {
+    "resonance",           "reference_noise",        "turned_sign",          "swapped_axes",
+    "unit_error",          "duplicated_blocks",      "clock_jump",           "sampling_rate_change",
+    "bursty_clock",        "random_telegraph_noise", "averaged_samples",     "vibration_bursts",
+    "chirped_disturbance", "modulated_disturbance",  "interpolated_samples", "heading_dependent_bias"};
 
 /// The navigation runs say nothing of what is found.
 const InvestigateOptions kQuiet{.predict_outages = false};
@@ -56,6 +71,48 @@ constexpr double kMissing = 0.07;
 
 /// The largest count of n that a share allows: three standard errors above it.
 double most_of(int n, double share) { return n * share + 3.0 * std::sqrt(n * share * (1.0 - share)); }
+
+double percent(int part, int whole) { return 100.0 * part / std::max(1, whole); }
+
+/// The cells of several causes together, by z.
+class Power {
+ public:
+  void add(double z, const Cell& cell) {
+    for (Cell* const sum : {&cells_[z], &all_}) {
+      sum->cases += cell.cases;
+      sum->named += cell.named;
+      sum->wrong += cell.wrong;
+      sum->open += cell.open;
+      sum->further += cell.further;
+    }
+  }
+  [[nodiscard]] double named(double z) const {
+    const auto cell = cells_.find(z);
+    return cell == cells_.end() ? 0.0 : percent(cell->second.named, cell->second.cases);
+  }
+  [[nodiscard]] const Cell& all() const { return all_; }
+  [[nodiscard]] std::string text() const {
+    char line[256];
+    std::snprintf(line, sizeof line,
+                  "named right %.1f %% at z = 6, %.1f %% at 12, %.1f %% at 30; wrong with confidence %.1f %%, another "
+                  "name left open %.1f %%; something further claimed in %.1f %%",
+                  named(6.0), named(12.0), named(30.0), percent(all_.wrong, all_.cases), percent(all_.open, all_.cases),
+                  percent(all_.further, all_.cases));
+    return line;
+  }
+
+ private:
+  std::map<double, Cell> cells_;
+  Cell all_;
+};
+
+std::string list_of_added() {
+  std::string list;
+  for (const std::string& cause : kAdded) {
+    list.append(list.empty() ? "" : ", ").append(cause);
+  }
+  return list;
+}
 
 struct Tally {
   std::map<double, Cell> cells;
@@ -89,6 +146,8 @@ void look_once(const Cause& cause, double z, std::uint64_t seed, Tally& tally) {
   }
   const Finding& first = report->findings.front();
   if (!names(first, std::string(cause.name))) {
+    std::printf("%s z %g seed %d: %s%s\n", std::string(cause.name).c_str(), z, static_cast<int>(seed),
+                std::string(first.evidence.cause->name).c_str(), first.evidence.ambiguous ? ", open" : "");
     ++tally.said[std::string(first.evidence.cause->name)];
     first.evidence.ambiguous ? ++cell.open : ++cell.wrong;
     return;
@@ -112,10 +171,15 @@ TEST(HiddenEffects, PowerAgainstSize) {
       "log likelihood reported at z = 12 and 30, over what an oracle gains there (z^2/2); left out where the size is "
       "not an oracle's.\n\n| cause | z = 6 | z = 12 | z = 30 | wrong | further | intervals that hold | gain "
       "|\n|---|---|---|---|---|---|---|---|\n");
-  std::map<double, Cell> all;
+  Power whole;
+  Power first;
+  Power added;
   Tally total;
   std::map<std::string, std::map<std::string, int>> confusion;
   for (const Cause& cause : cause_registry()) {
+    if (!asked_for(cause.name)) {
+      continue;
+    }
     Tally tally;
     for (const double z : {6.0, 12.0, 30.0}) {
       for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -127,11 +191,8 @@ TEST(HiddenEffects, PowerAgainstSize) {
     for (auto& [z, cell] : tally.cells) {
       wrong += cell.wrong;
       further += cell.further;
-      all[z].cases += cell.cases;
-      all[z].named += cell.named;
-      all[z].wrong += cell.wrong;
-      all[z].open += cell.open;
-      all[z].further += cell.further;
+      whole.add(z, cell);
+      (kAdded.count(cause.name) != 0 ? added : first).add(z, cell);
     }
     total.intervals += tally.intervals;
     total.holding += tally.holding;
@@ -147,18 +208,12 @@ TEST(HiddenEffects, PowerAgainstSize) {
       section.print(" |\n");
     }
   }
-  const auto share = [](int part, int whole) { return 100.0 * part / std::max(1, whole); };
   section.print(
-      "\nNamed right %.1f %% at z = 6, %.1f %% at 12, %.1f %% at 30; wrong with confidence %.1f %%, another name "
-      "left open %.1f %%; something further claimed in %.1f %%; 95 %% intervals hold the truth in %.1f %% of %d; "
-      "pooled gain %.2f of the oracle's.\n",
-      share(all[6.0].named, all[6.0].cases), share(all[12.0].named, all[12.0].cases),
-      share(all[30.0].named, all[30.0].cases),
-      share(all[6.0].wrong + all[12.0].wrong + all[30.0].wrong, all[6.0].cases + all[12.0].cases + all[30.0].cases),
-      share(all[6.0].open + all[12.0].open + all[30.0].open, all[6.0].cases + all[12.0].cases + all[30.0].cases),
-      share(all[6.0].further + all[12.0].further + all[30.0].further,
-            all[6.0].cases + all[12.0].cases + all[30.0].cases),
-      share(total.holding, total.intervals), total.intervals, total.gained / std::max(1.0, total.oracle));
+      "\nAll causes: %s; 95 %% intervals hold the truth in %.1f %% of %d; pooled gain %.2f of the oracle's.\n",
+      whole.text().c_str(), percent(total.holding, total.intervals), total.intervals,
+      total.gained / std::max(1.0, total.oracle));
+  section.print("\n- Causes that the registry began with: %s.\n- Causes that were added (%s): %s.\n",
+                first.text().c_str(), list_of_added().c_str(), added.text().c_str());
   section.print(
       "\nThe test allows wrong names with confidence in %g %%, something further in %g %% and intervals that miss in "
       "%g %%, each with "
@@ -174,17 +229,11 @@ TEST(HiddenEffects, PowerAgainstSize) {
       section.print("- %s:%s\n", cause.c_str(), line.c_str());
     }
   }
-  EXPECT_GE(share(all[30.0].named, all[30.0].cases), 90.0);
-  EXPECT_GE(share(all[12.0].named, all[12.0].cases), 85.0);
+  EXPECT_GE(whole.named(30.0), 90.0);
+  EXPECT_GE(whole.named(12.0), 85.0);
   // The limits of RESULTS.md, each with three standard errors of its count.
-  Cell whole;
-  for (const auto& [z, cell] : all) {
-    whole.cases += cell.cases;
-    whole.wrong += cell.wrong;
-    whole.further += cell.further;
-  }
-  EXPECT_LE(whole.wrong, most_of(whole.cases, kWrong));
-  EXPECT_LE(whole.further, most_of(whole.cases, kFurther));
+  EXPECT_LE(whole.all().wrong, most_of(whole.all().cases, kWrong));
+  EXPECT_LE(whole.all().further, most_of(whole.all().cases, kFurther));
   EXPECT_LE(total.intervals - total.holding, most_of(total.intervals, kMissing));
 }
 
@@ -204,6 +253,8 @@ TEST(HiddenEffects, TwoAtOnce) {
   accuracy::Section section("hidden/two");
   int first_named = 0;
   int both = 0;
+  int of_first = 0;  // neither cause was added
+  int both_of_first = 0;
   std::string missed;
   std::size_t made = 0;
   for (std::uint64_t seed = 9001; made < studies; ++seed) {
@@ -229,19 +280,27 @@ TEST(HiddenEffects, TwoAtOnce) {
     const bool one_found = found(one.effect.cause);
     const bool two_found = found(two.effect.cause);
     both += one_found && two_found ? 1 : 0;
+    const bool began_with = kAdded.count(one.effect.cause) + kAdded.count(two.effect.cause) == 0;
+    of_first += began_with ? 1 : 0;
+    both_of_first += began_with && one_found && two_found ? 1 : 0;
     first_named += !report->findings.empty() && (names(report->findings.front(), one.effect.cause) ||
                                                  names(report->findings.front(), two.effect.cause))
                        ? 1
                        : 0;
     if (!one_found || !two_found) {
-      missed.append("- ").append(one.effect.cause).append(" and ").append(two.effect.cause).append(": ");
+      missed.append("- ")
+          .append(one.effect.cause)
+          .append(" and ")
+          .append(two.effect.cause)
+          .append(seed % 2 == 0 ? ", z = 12: " : ", z = 30: ");
       missed.append(one_found ? "only the first" : two_found ? "only the second" : "neither").append("\n");
     }
   }
   section.print(
       "## Two effects at once\n\n%zu studies with two causes that are no rivals, at z = 12 or 30 each: the first "
-      "finding is one of them in %d, both are named in %d.\n\n%s",
-      made, first_named, both, missed.c_str());
+      "finding is one of them in %d, both are named in %d. Of %d pairs of causes that the registry began with both are "
+      "named in %d.\n\n%s",
+      made, first_named, both, of_first, both_of_first, missed.c_str());
   EXPECT_GE(both, static_cast<int>(0.6 * static_cast<double>(made)));
 }
 

@@ -157,7 +157,8 @@ def headings(shared: Path, out: Studies) -> None:
         keep = max(longest, key=len)
         rate = (len(keep) - 1) / (ticks[keep[-1]] - ticks[keep[0]])
         data = {**gyro(values[keep, 1:4], "rad/s"), "temp": (values[keep, 0], "temperature", "", "degC")}
-        recordings.append({"id": f"heading-{heading}", "rate_hz": rate, "condition": {"kind": "static"}, "data": data})
+        condition = {"kind": "static", "heading_deg": float(heading)}
+        recordings.append({"id": f"heading-{heading}", "rate_hz": rate, "condition": condition, "data": data})
     common = float(np.mean([r["rate_hz"] for r in recordings]))
     out.write("headings", "CXD5602PWBIMU", [{**r, "rate_hz": common} for r in recordings])
 

@@ -53,6 +53,8 @@ TEST(PopulationVerdict, NamesTheDeviceThatIsNotOfTheLineAndByWhat) {
   EXPECT_EQ(verdict.sentence, "One of 5 devices is not of the line: e.");
   EXPECT_EQ(verdict.level, VerdictLevel::Look);
   EXPECT_EQ(verdict.details.front(), "e by N of gyroscope z, static.");
+  EXPECT_EQ(standing_out(report, "e"), "e is not of the line of the 5 devices of line, by N of gyroscope z, static.");
+  EXPECT_EQ(standing_out(report, "a"), std::nullopt);
   ASSERT_EQ(verdict.facts.size(), 1U);
   EXPECT_EQ(verdict.facts[0].first, "/rows/0/places/4/p_holm");
   EXPECT_EQ(verdict.facts[0].second, report.rows[0].population.places[4].p_holm.value());

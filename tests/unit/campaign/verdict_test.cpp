@@ -111,7 +111,10 @@ TEST(Verdict, OfATableIsAboutTheDensityThatRowsShowWhateverTheModel) {
   for (TableRow& row : table.rows) {
     row.density = {};
   }
+  table.structure.emplace().statement = "One structure, 2GM, describes every condition.";
+  table.model_note = "The table shows 2GM, as was asked.";
   EXPECT_THAT(verdict_of(table).sentence, HasSubstr("the model 2GM holds none"));
+  EXPECT_THAT(verdict_of(table).details, testing::ElementsAre(table.structure->statement, table.model_note));
 }
 
 TEST(Verdict, OfSeveralTheGravestIsTheFirstOfTheWorstLevel) {

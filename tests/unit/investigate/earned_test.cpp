@@ -318,6 +318,37 @@ TEST_F(Earned, WhatLeavesTheNoiseOfItsChannelChangingIsNot) {
   EXPECT_EQ(beside(skewed), "");
 }
 
+TEST_F(Earned, GrossValuesAreDoubtedByNoMoreThanTheyGain) {
+  Remainder swelling;
+  swelling.id = "r0/gz.line_in_variance";
+  swelling.channel = "gz";
+  swelling.p_study = 0.0009;
+  swelling.in_time_or_frequency = true;
+  swelling.observed = 60.0;
+  remains_ = {swelling, swelling};
+  Evidence outliers = evidence_of("outliers");
+  outliers.shape = 5.0;
+  outliers.heldout_gain = 121.0;
+  EXPECT_EQ(doubt(outliers), "");
+  Evidence tails = evidence_of("heavy_tailed_noise");
+  tails.heldout_gain = 1000.0;
+  EXPECT_NE(doubt(tails), "") << "which noise that changes has";
+  outliers.heldout_gain = 119.0;
+  EXPECT_EQ(doubt(outliers), "with it in the model the noise of gz still changes");
+  remains_[1].id = "r1/gz.tiles";
+  EXPECT_EQ(doubt(outliers), "") << "another test's";
+  remains_.clear();
+  UnnamedFinding profile;
+  profile.effect.column = "gz";
+  profile.effect.kind = UnnamedKind::Variance;
+  profile.effect.value = {0.8, 1.5};
+  profile.heldout_gain = 500.0;
+  instead_.beside = {profile};
+  EXPECT_EQ(doubt(outliers), "") << "4.08 deviations of its loudest noise";
+  instead_.beside[0].effect.value = {0.8, 1.6};
+  EXPECT_EQ(doubt(outliers), "a profile that has no name predicts the recordings beside it") << "3.95";
+}
+
 TEST_F(Earned, AMeanIsDoubtedByWhatAMeanCanShowInAndByItsSize) {
   Remainder change;
   change.channel = "gz";

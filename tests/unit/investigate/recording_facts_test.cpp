@@ -16,6 +16,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <numbers>
 #include <optional>
 
 namespace driftlab::investigate {
@@ -94,6 +95,28 @@ TEST(Resampled, RunningMeansAreFoundAndLowPassesAreNot) {
   }
   EXPECT_EQ(find_running_mean(low, 1e-6), 0U);
   EXPECT_EQ(find_running_mean(rows, 1e-6), 0U);
+}
+
+// Its zero at half the rate is that of a mean over two samples, and slow noise leaks into it.
+TEST(Resampled, ALowPassOfSecondOrderIsNoRunningMean) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const std::vector<double> rows = rounded_noise(30000, 1e-6, seed);
+    const std::vector<double> steps = rounded_noise(30000, 1e-6, 100 + seed);
+    const double corner = 0.2 + 0.01 * static_cast<double>(seed - 1);  // of the rate
+    const double w = std::tan(std::numbers::pi * corner);
+    const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * w + w * w);
+    std::vector<double> low(rows.size());
+    double walk = 0.0;
+    for (std::size_t i = 2; i < rows.size(); ++i) {
+      low[i] = norm * (w * w * (rows[i] + 2.0 * rows[i - 1] + rows[i - 2]) - 2.0 * (w * w - 1.0) * low[i - 1] -
+                       (1.0 - std::numbers::sqrt2 * w + w * w) * low[i - 2]);
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      walk += 0.02 * steps[i];
+      low[i] += walk;
+    }
+    EXPECT_EQ(find_running_mean(low, 1e-6), 0U) << seed;
+  }
 }
 
 TEST(TimeGrid, SamplesThatArriveInBurstsAreEvenlySpaced) {

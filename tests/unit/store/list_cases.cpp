@@ -257,6 +257,30 @@ TEST_P(ListStore, VerdictsAreTheNewestWordOnARecordingAndEveryOtherResult) {
   EXPECT_EQ(verdicts(), Verdicts{}) << "results that held the recording go with it";
 }
 
+TEST_P(ListStore, WhatTheDevicesOfAModelSayOfOneHoldsUntilTheySayElse) {
+  const Recording recording = add_recording(store(), add_device(store()));
+  const auto finish = [&](const std::string& model, const std::string& said) {
+    clock_.advance(kMinute);
+    add_job(store(), "key " + make_id("job", 0));
+    JobResults results;
+    results.verdicts.push_back(about(recording, "fits", "fine"));
+    results.verdicts.push_back({.device_id = recording.device_id, .channel = model, .level = "look", .verdict = said});
+    ASSERT_TRUE(store().succeed(lease_of(claim_one(store())), results)->held);
+  };
+  const auto newest = [&] {
+    return store().overviews({recording.device_id})->at(recording.device_id).verdict->verdict;
+  };
+  finish("MPU-6050", "not of the line");
+  finish("board", "not of the boards");
+  EXPECT_EQ(store().verdicts({}, {})->size(), 2U) << "each model speaks for itself";
+  finish("MPU-6050", "not of the line by N");
+  EXPECT_EQ(newest(), "not of the line by N");
+  finish("MPU-6050", "");
+  EXPECT_EQ(newest(), "fits") << "nothing is to be said any more";
+  ASSERT_EQ(store().verdicts({}, {})->size(), 1U);
+  EXPECT_EQ(store().verdicts({}, {})->front().channel, "board");
+}
+
 TEST_P(ListStore, AResultOfOneDeviceIsThatDevices) {
   const Recording recording = add_recording(store(), add_device(store()));
   const std::string request = R"({"inputs":{"device":")" + recording.device_id + R"("}})";

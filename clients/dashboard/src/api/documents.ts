@@ -70,11 +70,12 @@ export interface Spectrum { unit: string; dt_s: number; samples: number; first_s
 export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number; apart?: {t0: number; t1: number; samples: number; deviations: number}[] }
 export interface Spectrogram { unit: string; dt_s: number; samples: number; first_s: number; expected: 'model' | 'median'; time_s: number[]; f_hz: number[]; log10_ratio: Nullable[]; window_samples: number }
 
+export interface JobArm { label?: string | null; recordings?: Record<string, unknown>[] }
 export interface StoredProblem { title?: string; detail: string; type?: string; retryable?: boolean }
 export interface Job {
   id: string; kind: string; state: string; stage: string | null; progress: number; attempt: number; cancel_requested: boolean;
   created_at: string; started_at: string | null; finished_at: string | null; device_name: string | null; recording_name: string | null;
-  request: {kind: string; inputs: {recordings?: {id: string; revision: number; name?: string}[]; study?: string; device?: string; axis?: string; scenario?: unknown; document?: {id: string}; baseline?: {label?: string | null}; candidate?: {label?: string | null}}; parameters: {seed?: number; runs?: number; question?: string}; algorithm_version: number};
+  request: {kind: string; inputs: {recordings?: {id: string; revision: number; name?: string}[]; study?: string; device?: string; axis?: string; scenario?: unknown; drive?: string; document?: Record<string, unknown> & {id: string}; baseline?: JobArm; candidate?: JobArm; excluded?: unknown[]}; parameters: {seed?: number; runs?: number; question?: string}; algorithm_version: number};
   result: {href: string} | null; problem: StoredProblem | null; failed_attempts: StoredProblem[];
 }
 export interface CountSince { at: string; count: number }

@@ -1,8 +1,8 @@
 // Where things go: scales, margins and ticks of a column of plots that share their x axis.
-import {scaleLinear, scaleLog} from 'd3-scale';
+import {decadeTicks, linear, logarithmic, ticksBetween, type Mapping} from './scale';
 import {finite, type Axis, type Numbers, type Plot, type Series} from './spec';
 
-export interface Scale { (value: number): number; invert(pixel: number): number; ticks: number[]; minor: number[]; domain: [number, number] }
+export interface Scale extends Mapping { ticks: number[]; minor: number[]; domain: [number, number] }
 
 export interface Area {
   plot: Plot;
@@ -48,30 +48,16 @@ function padded([low, high]: [number, number], log: boolean, share: number): [nu
 }
 
 function logTicks([low, high]: [number, number]): {ticks: number[]; minor: number[]} {
-  const ticks: number[] = [];
-  const minor: number[] = [];
   const decades = Math.log10(high / low);
-  const labelled = decades < 1.3 ? [1, 2, 3, 5] : decades < 2.2 ? [1, 2, 5] : [1];
   const every = decades > 9 ? 2 : 1;
-  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
-    for (let digit = 1; digit < 10; ++digit) {
-      const value = Number(`${digit}e${e}`);
-      if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
-      if (labelled.includes(digit) && (digit > 1 || e % every === 0)) ticks.push(value);
-      else minor.push(value);
-    }
-  }
-  return {ticks, minor};
+  const ticks = decadeTicks(low, high, decades < 1.3 ? [1, 2, 3, 5] : decades < 2.2 ? [1, 2, 5] : [1]).filter(tick => Math.floor(Math.log10(tick) + 1e-9) % every === 0);
+  return {ticks, minor: decadeTicks(low, high, [1, 2, 3, 4, 5, 6, 7, 8, 9]).filter(tick => !ticks.includes(tick))};
 }
 
 export function makeScale(axis: Axis, domain: [number, number], from: number, to: number): Scale {
-  if (axis.scale === 'log') {
-    const scale = scaleLog().domain(domain).range([from, to]);
-    return Object.assign((value: number) => scale(value), {invert: (pixel: number) => scale.invert(pixel), domain, ...(axis.ticks ? {ticks: [...axis.ticks], minor: []} : logTicks(domain))});
-  }
-  const scale = scaleLinear().domain(domain).range([from, to]);
-  const ticks = axis.ticks ? [...axis.ticks] : scale.ticks(Math.max(2, Math.round(Math.abs(to - from) / (from < to ? 90 : 44))));
-  return Object.assign((value: number) => scale(value), {invert: (pixel: number) => scale.invert(pixel), domain, ticks, minor: []});
+  const isLog = axis.scale === 'log';
+  const ticks = axis.ticks ? {ticks: [...axis.ticks], minor: []} : isLog ? logTicks(domain) : {ticks: ticksBetween(...domain, Math.max(2, Math.round(Math.abs(to - from) / (from < to ? 90 : 44)))), minor: []};
+  return Object.assign((isLog ? logarithmic : linear)(...domain, from, to), {domain, ...ticks});
 }
 
 const drawn = (plot: Plot): readonly Series[] => plot.series.filter(series => !series.hidden);

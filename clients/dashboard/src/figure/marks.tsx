@@ -1,5 +1,4 @@
 // Points, curves and bands of a plot; the meaning is in mark and dash, colour repeats it.
-import {area, line} from 'd3-shape';
 import type {JSX} from 'preact';
 import type {Area} from './layout';
 import {MarkAt} from './MarkAt';
@@ -18,22 +17,32 @@ function visible(series: Series, place: Area): number[] {
   return indices;
 }
 
+// A line through the points that are there, interrupted where one is not.
+function through(indices: readonly number[], isThere: (i: number) => boolean, x: (i: number) => number, y: (i: number) => number): string {
+  return indices.map((i, nth) => isThere(i) ? `${nth > 0 && isThere(indices[nth - 1]!) ? 'L' : 'M'}${x(i)},${y(i)}` : '').join('');
+}
+
 export function Band({series, place}: {series: Series; place: Area}): JSX.Element | null {
   if (!series.band || !series.low || !series.high) return null;
   const inside = new Set(visible(series, place).filter(i => finite(series.high?.[i])));
   const log = place.plot.y.scale === 'log';
-  const path = area<number>().defined(i => inside.has(i))
-    .x(i => round(place.x(series.x[i]!)))
-    .y0(i => { const low = series.low![i]; return round(finite(low) && (!log || low > 0) ? place.y(low) : place.bottom); })
-    .y1(i => round(place.y(series.high![i]!)))(series.x.map((_, i) => i).filter(i => inside.has(i) || !finite(series.y[i])));
-  return <path d={path ?? ''} fill={series.band} stroke="none" />;
+  const x = (i: number): number => round(place.x(series.x[i]!));
+  const low = (i: number): number => { const end = series.low![i]; return round(finite(end) && (!log || end > 0) ? place.y(end) : place.bottom); };
+  const stretches = series.x.reduce<number[][]>((found, _, i) => {
+    if (inside.has(i)) found[found.length - 1]!.push(i);
+    else if (!finite(series.y[i])) found.push([]);
+    return found;
+  }, [[]]);
+  // Out along the upper ends and back along the lower ones.
+  const path = stretches.map(one => one.length > 0 ? `${through(one, () => true, x, i => round(place.y(series.high![i]!)))}${[...one].reverse().map(i => `L${x(i)},${low(i)}`).join('')}Z` : '').join('');
+  return <path d={path} fill={series.band} stroke="none" />;
 }
 
 export function Curve({series, place}: {series: Series; place: Area}): JSX.Element | null {
   if (!series.line) return null;
   const ok = new Set(visible(series, place));
-  const path = line<number>().defined(i => ok.has(i)).x(i => round(place.x(series.x[i]!))).y(i => round(place.y(series.y[i]!)))(series.x.map((_, i) => i));
-  return <path d={path ?? ''} fill="none" stroke={series.colour} stroke-width={series.width ?? 1.3} stroke-linejoin="round" {...(series.dash ? {'stroke-dasharray': series.dash} : {})} />;
+  const path = through(series.x.map((_, i) => i), i => ok.has(i), i => round(place.x(series.x[i]!)), i => round(place.y(series.y[i]!)));
+  return <path d={path} fill="none" stroke={series.colour} stroke-width={series.width ?? 1.3} stroke-linejoin="round" {...(series.dash ? {'stroke-dasharray': series.dash} : {})} />;
 }
 
 export function Points({series, place}: {series: Series; place: Area}): JSX.Element | null {

@@ -6,7 +6,7 @@ import type {Channel, Device, List, Quantity} from '../api/documents';
 import {difference, known, ratio, type Interval} from '../format/interval';
 import {writeQuantity} from '../format/number';
 import {factorBetween, unitsFor} from '../format/units';
-import {listWords, sensorOf, spaced, writeUnit} from '../format/words';
+import {listWords, sensorOf, spaced, writeSentence, writeUnit} from '../format/words';
 import {defaultReadout, Figure} from '../figure/Figure';
 import type {Numbers, Plot, Series} from '../figure/spec';
 import {finite, valueAt} from '../figure/spec';
@@ -17,6 +17,7 @@ import {Hairlines, Panel, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Add} from './compare/Add';
 import {nameApart, useSlot, type Item} from './compare/items';
+import type {StructureDocument} from './device/documents';
 import {measuredSeries, type Curve} from './recording/plots';
 
 const MOST = 8;
@@ -112,7 +113,9 @@ export default function Compare(): JSX.Element {
   const set = (next: string[]): void => choose({with: [...new Set(next)].join(',') || null});
   const plots = useMemo(() => items.length > 0 ? plotsOf(items, view) : [], [items.map(item => item.key + item.name).join(), view.unit, view.curve, view.isByOneSecond]);
   const refused = slots.filter(({problem}, i) => problem && i < wanted.length);
-  const models = [...new Set(items.flatMap(item => item.given ? [] : item.model ?? 'none that was fitted'))];
+  // A channel's own name may hold commas: the list's names are encoded by themselves.
+  const told = [...new Set(items.flatMap(({channel, given, recording}) => channel && !given ? `${recording}:${encodeURIComponent(channel.channel)}` : []))];
+  const structure = useRead<StructureDocument>(told.length > 1 ? `/v1/structures?of=${encodeURIComponent(told.join(','))}` : null);
   const measured = items.find(item => item.channel && !item.given);
   const leftOut = items.filter(item => item.leftOut.length > 0);
   const isOpen = isAdding || wanted.length === 0;
@@ -126,7 +129,9 @@ export default function Compare(): JSX.Element {
     {wanted.length === 0 && <p class="verdict">Choose what to compare: the same sensor before and after, two of a kind, conditions of one device, a simulation model or a data sheet beside them.</p>}
     {wanted.length > 0 && items.length === 0 && refused.length === 0 && !slots.some(({lacks}) => lacks) && <Panel title="Allan deviation"><Hairlines /></Panel>}
     {items.length > 0 && <>
-      {items.length > 1 && <p class="verdict">{models.length === 1 ? `All have one structure: ${models[0]}.` : models.length > 1 ? `Their structures differ: ${models.join(', ')}.` : 'What is stated, beside each other.'}{leftOut.map(item => <small key={item.key}>The curve of {item.name} is without what is no process of the noise: {listWords(item.leftOut.map(cause => cause === 'unnamed' ? 'effects without a name' : spaced(cause)))}.</small>)}{others.length > 0 && <small>Not drawn, of another sensor than the first: {listWords(others.map(item => `${item.name} (${sensorOf(item.quantity)})`))}.</small>}</p>}
+      {structure.problem && <Refusal problem={structure.problem} again={structure.again} />}
+      {told.length > 1 && structure.loading && <Hairlines />}
+      {items.length > 1 && !structure.loading && <p class="verdict">{structure.data ? writeSentence(structure.data.statement) : told.length > 1 ? '' : told.length > 0 ? 'One recording, beside what is stated or fitted.' : 'What is stated, beside each other.'}{leftOut.map(item => <small key={item.key}>The curve of {item.name} is without what is no process of the noise: {listWords(item.leftOut.map(cause => cause === 'unnamed' ? 'effects without a name' : spaced(cause)))}.</small>)}{others.length > 0 && <small>Not drawn, of another sensor than the first: {listWords(others.map(item => `${item.name} (${sensorOf(item.quantity)})`))}.</small>}</p>}
       <div class="compared">{plots.length > 0 && <Figure name="compare" title={`${view.curve === 'haar' ? 'Haar' : 'Allan'} deviation`} plots={plots} source="driftlab" describe={`${view.curve === 'haar' ? 'Haar' : 'Allan'} deviations of ${items.filter(item => item.channel).map(item => item.name).join(', ')}, and their ratio to the first.`}
         controls={<Segments label="Curve" options={[['allan', 'Allan'], ['haar', 'Haar']] as const} value={view.curve} onChange={value => choose({fig: value === 'allan' ? null : value})} />}
         sub={<><label>normalise <select value={query.get('norm') ?? ''} onChange={event => choose({norm: event.currentTarget.value || null})}><option value="">not</option><option value="1s">each by its own at 1 s</option></select></label> <label>unit <select value={view.unit} disabled={view.isByOneSecond} onChange={event => choose({unit: event.currentTarget.value === units[0] ? null : event.currentTarget.value})}>{units.map(unit => <option key={unit} value={unit}>{writeUnit(unit)}</option>)}</select></label></>}

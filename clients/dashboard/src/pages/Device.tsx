@@ -24,6 +24,7 @@ import {conditionKey} from './compare/items';
 import {colours, type ParameterTable, type Trends} from './device/documents';
 import {ExportModel} from './device/ExportModel';
 import {Recordings} from './device/Recordings';
+import {Structure} from './device/Structure';
 import {Parameters} from './device/Table';
 import {SheetLine} from './device/SheetLine';
 import {TrendFrame} from './device/TrendPanel';
@@ -58,6 +59,14 @@ function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}
   return <Figure name={`${table.device}-${table.axis}-allan`} title="Allan deviation by condition" sub="first recording of each" plots={plots} source={`driftlab, ${table.device}, ${table.sensor} ${table.axis ?? ''}`}
     describe={`Allan deviations of ${plots[0]!.series.map(one => one.name).join(', ')}, log-log with equal decades.`} cursor={tau} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }}
     readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} note="Rates are one ordered ramp, angular accelerations another, dashed with open marks." />;
+}
+
+// The model of the table: the best over all rows unless another of those that were compared is chosen.
+function Model({table, chosen}: {table: ParameterTable; chosen: string | null}): JSX.Element {
+  const models = table.structure?.ranking.map(each => each.model) ?? [];
+  if (models.length < 2) return <span class="sub">model <b>{table.model}</b>{chosen ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>;
+  return <label class="sub">model <select value={chosen ?? ''} onChange={event => choose({model: event.currentTarget.value || null})}>
+    <option value="">{models[0]}, best over all rows</option>{models.map(each => <option key={each} value={each}>{each}</option>)}</select></label>;
 }
 
 // `onCompared`: told what a comparison would show, its conditions.
@@ -99,7 +108,7 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
       <div class="ptop"><h2>Parameters by condition</h2>
         <Segments label="Sensor and axis" options={axes.map(channel => [`${sensorOf(channel.quantity)}:${channel.axis}`, `${channel.quantity === 'angular_rate' ? 'ω' : 'f'} ${channel.axis}`] as const)} value={`${sensorOf(chosen.quantity)}:${chosen.axis}`} onChange={value => { const [sensor = null, axis = null] = value.split(':'); choose({sensor, axis, sel: null, ref: null}); }} />
         <Segments label="Method" options={[['gmwm', 'GMWM'], ['av', 'Allan']] as const} value={method} onChange={value => choose({method: value === 'gmwm' ? null : value})} />
-        {read.data?.model && <span class="sub">model <b>{read.data.model}</b>{model ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>}
+        {read.data?.model && <Model table={read.data} chosen={model} />}
         <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button><button type="button" class="quiet" onClick={() => void text('text/x-latex', 'tex')}>LaTeX</button></div>
         <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. The report lists seed, algorithm version and file hash of each recording.</p>} />
       </div>
@@ -107,7 +116,7 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
       <Shown read={read}>{table => <><Parameters table={table} />{table.data_sheet && <SheetLine comparison={table.data_sheet} />}</>}</Shown>
     </section>
     {read.data && <div class="grid two">
-      <Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} />
+      <div class="stack"><Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} /><Structure table={read.data} /></div>
       <Panel title={`Trends against ${against === 'rate' ? 'rate' : 'angular acceleration'}`} controls={<Segments label="Against" options={[['rate', '|rate|'], ['acceleration', '|acceleration|']] as const} value={against === 'rate' ? 'rate' : 'acceleration'} onChange={value => choose({trend: value === 'rate' ? null : value})} />}>
         {trends.problem ? <Refusal problem={trends.problem} again={trends.again} /> : !trends.data ? <Hairlines /> : shown.length === 0 ? <p class="sec">One condition shows no trend. Record this device while it turns at a known rate.</p>
           : <><div class="small-multiples">{shown.map(trend => <TrendFrame key={trend.parameter} trend={trend} device={device.name} colour={colour} />)}</div><p class="note">Zero is on every axis. “Moves” rejects equality at 5 %; “rises” or “falls” only where the trend itself does. … not identified.</p></>}

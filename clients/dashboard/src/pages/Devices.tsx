@@ -3,10 +3,11 @@ import type {JSX} from 'preact';
 import {useRead} from '../api/client';
 import type {Device, List} from '../api/documents';
 import {conditionName} from '../format/words';
-import {choose, pageOf, usePlace} from '../route';
+import {pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {LastResult} from '../shell/LastResult';
 import {Sought} from '../shell/Sought';
+import {Pager} from '../shell/Pager';
 import {Panel, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -32,7 +33,7 @@ export default function Devices(): JSX.Element {
             <td class="sec">{device.summary?.conditions.slice(0, 4).map(one => conditionName(one.condition)).join(', ')}{(device.summary?.conditions.length ?? 0) > 4 ? ` and ${device.summary!.conditions.length - 4} more` : ''}</td>
             <td class="sec"><LastResult device={device} /></td>
           </tr>)}</tbody></table></div>}
-        {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
+        <Pager next={list.next_cursor} />
       </>;
     }}</Shown></Panel>
   </>;

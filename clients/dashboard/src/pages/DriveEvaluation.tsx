@@ -8,10 +8,12 @@ import {capital, plural, writeSentence, writeUnit} from '../format/words';
 import {csvOf, save} from '../figure/export';
 import {defaultReadout, Figure, Tools} from '../figure/Figure';
 import {choose, listOf, pageOf, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Head} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {MadeBy, Report} from '../shell/Report';
 import {curlOf} from '../shell/copy';
+import {NextRows} from '../shell/Pager';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Side, type Simulated} from './drive/documents';
@@ -26,13 +28,13 @@ function Value({of, unit = ''}: {of: Estimated; unit?: string}): JSX.Element {
   return <><b>{written.value}</b> <span class="ci">{written.interval}</span></>;
 }
 
-const How = (): JSX.Element => <><p>Fixes are withheld in stretches of each length, and what the filter then says of the end is set against the reference. Intervals are from a bootstrap over blocks of one period. A simulation draws readings and fixes from the same model along the recorded way and runs the same outages.</p><p><a href="/docs/drives">The manual</a> has the details.</p></>;
+const How = ({id}: {id: string}): JSX.Element => <><p>Fixes are withheld in stretches of each length, and what the filter then says of the end is set against the reference. Intervals are from a bootstrap over blocks of one period. A simulation draws readings and fixes from the same model along the recorded way and runs the same outages.</p><p><a href="/docs/drives">The manual</a> has the details.</p><RunAgain job={id} /></>;
 
 function Errors({of, side, was, id, curl}: {of: Duration; side: Partial<Side>; was: Side | undefined; id: string; curl: string}): JSX.Element {
   const alike = <T extends {duration_s: number}>(list: T[] | undefined): T | undefined => list?.find(each => each.duration_s === of.duration_s);
   const simulated = alike(side.simulated);
   const plots = useMemo(() => growthPlots(of, simulated, alike(was?.durations), alike(was?.simulated)), [of, side, was]);
-  return <Figure name={`${id}-error-${of.duration_s}s`} title={`Error in outages of ${of.duration_s} s`} sub={was ? 'before and after mending' : simulated ? 'measured, over the same simulated' : 'measured'} plots={plots} how={How} curl={curl} source={`driftlab, ${id}`}
+  return <Figure name={`${id}-error-${of.duration_s}s`} title={`Error in outages of ${of.duration_s} s`} sub={was ? 'before and after mending' : simulated ? 'measured, over the same simulated' : 'measured'} plots={plots} how={() => <How id={id} />} curl={curl} source={`driftlab, ${id}`}
     describe={`Horizontal error against the time without fixes, log-log: ${writeNumber(of.rms_m.value)} m after ${of.duration_s} s.${simulated ? ` Simulated, ${writeNumber(simulated.rms_m)} m.` : ''}`}
     readout={x => <><b>{writeNumber(x)} s</b>{defaultReadout(plots[0]!, x)}<span>m</span></>} quietReadout={<span>{capital(plural(of.n, 'outage'))} of {of.duration_s} s: {writeNumber(of.rms_m.value)} m, by its own covariance {writeNumber(of.promised_rms_m)} m.</span>} />;
 }
@@ -61,7 +63,7 @@ function Outages({of, path, id, curl}: {of: Duration; path: Measured['path']; id
     <Panel title={`Table of outages of ${of.duration_s} s`} controls={<Segments label="Order" options={[['start', 'By start'], ['worst', 'Worst first']] as const} value={worstFirst ? 'worst' : 'start'} onChange={value => choose({order: value === 'worst' ? 'worst' : null, from: null})} />}>
       <div class="scroll" tabIndex={0} role="region" aria-label="Outages one by one"><table><thead><tr><th scope="col" class="n">start, s</th><th scope="col">motion</th><th scope="col" class="n">error, m</th><th scope="col" class="n">along</th><th scope="col" class="n">across</th><th scope="col" class="n">NEES</th><th scope="col" class="n">straight line, m</th><th scope="col" class="n">phase</th></tr></thead>
         <tbody>{rows.slice(from, from + ROWS).map((each, i) => <tr key={i}><th scope="row" class="n">{writeTick(each.start_s)}</th><td class="sec">{each.motion}</td><td class="n"><b>{writeNumber(errorOf(each))}</b></td><td class="n">{writeNumber(each.along_m)}</td><td class="n">{writeNumber(each.across_m)}</td><td class="n">{writeNumber(each.nees)}</td><td class="n">{writeNumber(each.straight_line_error_m)}</td><td class="n">{each.phase}</td></tr>)}</tbody></table></div>
-      {(from > 0 || rows.length > from + ROWS) && <p class="row">{from > 0 && <button type="button" class="btn" onClick={() => choose({from: null})}>First</button>}{rows.length > from + ROWS && <button type="button" class="btn" onClick={() => choose({from: String(from + ROWS)})}>Next {ROWS}</button>}</p>}
+      <NextRows from={from} rows={ROWS} count={rows.length} />
     </Panel>
   </>;
 }

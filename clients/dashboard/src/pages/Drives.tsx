@@ -3,8 +3,9 @@ import type {JSX} from 'preact';
 import {useRead} from '../api/client';
 import type {List} from '../api/documents';
 import {writeWhen} from '../format/time';
-import {choose, pageOf, usePlace} from '../route';
+import {pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -34,7 +35,7 @@ export default function Drives(): JSX.Element {
         <Panel title="Drives" sub="newest first"><div class="scroll"><table class="stacked">
           <thead><tr><th scope="col">drive</th><th scope="col">vehicle</th><th scope="col">outages of</th><th scope="col">stored</th></tr></thead>
           <tbody>{list.items.map(each => <tr key={each.id}><th scope="row"><a href={pageOf('drives', each.id)}>{each.name}</a></th><td class="sec">{each.vehicle}</td><td class="sec"><Wanted drive={each.drive} /></td><td class="sec nowrap">{writeWhen(each.created_at)}</td></tr>)}</tbody></table></div>
-          {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
+          <Pager next={list.next_cursor} />
         </Panel>
         <Panel title="Asked of them" sub="newest first"><Shown read={asked}>{rows => rows.items.length === 0 ? <p class="sec">Nothing yet. A drive’s page asks.</p> : <Evaluations rows={rows.items} named />}</Shown></Panel>
       </div>}</Shown>

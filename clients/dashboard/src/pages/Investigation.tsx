@@ -9,6 +9,7 @@ import {Drawn} from '../figure/Drawn';
 import {csvOf, save, type Table} from '../figure/export';
 import {Tools} from '../figure/Figure';
 import {choose, pageOf, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Head} from '../shell/Head';
 import {MadeBy, Report} from '../shell/Report';
 import {curlOf} from '../shell/copy';
@@ -58,6 +59,8 @@ function Found({found}: {found: Investigation}): JSX.Element {
   const shown = channels.find(one => one.channel === query.get('axis')) ?? channels[0];
   const title = `What the simulation gets wrong: ${device.data?.name ?? '…'}`;
   const table = (): void => save(`${found.id}-findings.csv`, 'text/csv', csvOf({heading: ['cause', 'status', 'channels', 'parameter', 'value', 'low', 'high', 'unit', 'score'], rows: found.findings.flatMap(finding => Object.entries(finding.parameters).map(([name, q]) => [finding.cause, finding.status, finding.channels.map(columnOf).join(' '), name, q.value, q.ci95?.[0] ?? null, q.ci95?.[1] ?? null, q.unit, finding.score ?? null]))}));
+  // Also where nothing was found.
+  const how = (): JSX.Element => <><p>Every listed cause is sought in the recordings, estimated, held out and compared with its rivals; checks compare the recordings with simulations of the baseline, corrected for their number. <a href="/docs/analysis">The manual</a> tells how.</p><RunAgain job={found.job} /></>;
   useTitle(title);
   const causes = new Set((found.not_examined ?? []).map(each => each.cause)).size;
   return <>
@@ -73,12 +76,12 @@ function Found({found}: {found: Investigation}): JSX.Element {
     </section>
     {channels.length > 1 && <p class="row" style={{marginTop: '16px'}}><Segments label="Channel" options={channels.map(one => [one.channel, columnOf(one.channel)] as const)} value={shown?.channel ?? ''} onChange={value => choose({axis: value})} /></p>}
     {shown && <Measured found={found} one={shown} names={names} />}
-    {groups.map(([cause, list], i) => <Panel key={cause} title={capital(causeName(cause))} sub={`${list.every(finding => finding.status === 'identified') ? 'identified' : 'ambiguous'} · ${plural(list.length, 'finding')}`} tools={i === 0 ? <Tools title="The search" onCsv={table} curl={curlOf(`/v1/investigations/${found.id}`)} how={() => <p>Every listed cause is sought in the recordings, estimated, held out and compared with its rivals; checks compare the recordings with simulations of the baseline, corrected for their number. <a href="/docs/analysis">The manual</a> tells how.</p>} /> : undefined}>
+    {groups.map(([cause, list], i) => <Panel key={cause} title={capital(causeName(cause))} sub={`${list.every(finding => finding.status === 'identified') ? 'identified' : 'ambiguous'} · ${plural(list.length, 'finding')}`} tools={i === 0 ? <Tools title="The search" onCsv={table} curl={curlOf(`/v1/investigations/${found.id}`)} how={how} /> : undefined}>
       <Findings list={list} found={found} names={names} total={ids.size} />
     </Panel>)}
     <Unnamed found={found} />
     <div class="grid two">
-      <Drawn name={`${found.id}-checks`} title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`} source={`driftlab, ${found.id}`} curl={curlOf(`/v1/investigations/${found.id}`)} table={() => checkTable(found, names)}><Checks found={found} names={names} /></Drawn>
+      <Drawn name={`${found.id}-checks`} title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`} source={`driftlab, ${found.id}`} curl={curlOf(`/v1/investigations/${found.id}`)} how={how} table={() => checkTable(found, names)}><Checks found={found} names={names} /></Drawn>
       <NotExamined found={found} />
     </div>
     {(found.notes ?? []).map(note => <p key={note} class="note">{note}</p>)}

@@ -7,6 +7,7 @@ import {writeWhen} from '../format/time';
 import {conditionName, plural} from '../format/words';
 import {choose, go, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Refusal, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {causeName, type InvestigationRow} from './investigation/documents';
@@ -48,6 +49,6 @@ export default function Investigations(): JSX.Element {
     <Panel title={device ? `Of ${device}` : 'Newest first'}><Shown read={read}>{list => list.items.length === 0 ? <p class="sec">None yet. A device’s page asks for one.</p> : <>
       <table class="stacked"><thead><tr><th scope="col">device</th><th scope="col">found</th><th scope="col">when</th></tr></thead><tbody>{list.items.map(row => { const causes = [...new Set(row.findings.map(finding => finding.cause))]; return <tr key={row.id}>
         <th scope="row"><a href={pageOf('investigations', row.id)}>{nameOf(row.device)}</a></th><td class="sec">{causes.length === 0 ? 'nothing' : `${causes.slice(0, 5).map(causeName).join(', ')}${causes.length > 5 ? ` and ${causes.length - 5} more` : ''}`}</td><td class="sec">{writeWhen(row.created_at)}</td></tr>; })}</tbody></table>
-      {list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</>}</Shown></Panel>
+      <Pager next={list.next_cursor} /></>}</Shown></Panel>
   </>;
 }

@@ -10,14 +10,9 @@ import {Head} from '../shell/Head';
 import {copy} from '../shell/copy';
 import {Panel, Progress, Refusal, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
+import {asked} from './job/asked';
+import {Events} from './job/Events';
 import {Cancel, resultPage, timeLeft, what} from './Jobs';
-
-// What a person would send to queue the same again.
-function asked(job: Job): {kind: string; inputs: unknown; parameters: unknown} {
-  const {inputs, parameters} = job.request;
-  const recordings = inputs.recordings?.map(one => one.id);
-  return {kind: job.kind, inputs: inputs.study ? {study: inputs.study} : recordings ? {recordings} : inputs, parameters};
-}
 
 function sentence(job: Job): string {
   const took = job.started_at && job.finished_at ? writeDuration((Date.parse(job.finished_at) - Date.parse(job.started_at)) / 1000) : '';
@@ -44,6 +39,7 @@ export default function JobPage(): JSX.Element {
       <Head crumb={[['Jobs', '/jobs'], [job.id, null]]} title={`${capital(jobKind(job.kind))}: ${what(job)}`} facts={[job.state, `attempt ${job.attempt}`, `queued ${writeFull(job.created_at)}`]}
         actions={<>{job.state === 'succeeded' && job.kind !== 'pool' && <a class="btn primary" href={resultPage(job)}>Result</a>}
           {['failed', 'dead', 'cancelled'].includes(job.state) && <button type="button" class="btn primary" onClick={() => send<Job>('POST', '/v1/jobs', asked(job)).then(next => go(pageOf('jobs', next.id)), error => setProblem(error as Problem))}>Run again</button>}
+          {job.finished_at && job.kind !== 'pool' && <a class="btn" href={`/jobs/new?like=${job.id}`}>Run again with other settings</a>}
           <Cancel job={job} onDone={read.again} /></>} />
       <p class="verdict" role="status">{job.problem && <span class="g bad" aria-hidden="true">✗ </span>}{sentence(job)}</p>
       {problem && <Refusal problem={problem} />}
@@ -61,6 +57,7 @@ export default function JobPage(): JSX.Element {
           </tbody></table>
         </Panel>
       </div>
+      {job.finished_at && <Events job={job.id} />}
     </>;
   }}</Shown>;
 }

@@ -7,6 +7,7 @@ import {writeClock, writeDuration, writeMoment} from '../format/time';
 import {capital, jobKind, plural} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -88,12 +89,13 @@ export default function Jobs(): JSX.Element {
   const path = `/v1/jobs?sort=-created_at&limit=50${state === 'all' ? '' : `&state=${state}`}${kind && `&kind=${encodeURIComponent(kind)}`}${after ? `&cursor=${after}` : ''}`;
   const read = useRead<List<Job>>(path, 2000);
   const counts = useRead<Counts>(`/v1/counts?since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 2000);
+  const workers = useRead<{workers: number}>('/v1/workers', 30000);
   const jobs = read.data?.items ?? [];
   const running = jobs.filter(job => job.state === 'running');
   const from = Math.min(...jobs.map(job => Date.parse(job.created_at)));
   const to = Math.max(...jobs.map(job => job.finished_at ? Date.parse(job.finished_at) : Date.now()), from + 1000);
   return <>
-    <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued, ${counts.data.jobs.failed_since?.count ?? 0} failed today`, 'live']}
+    <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued, ${counts.data.jobs.failed_since?.count ?? 0} failed today`, workers.data && plural(workers.data.workers, 'worker'), 'live']}
       actions={<><label>kind <select value={kind} onChange={event => choose({kind: event.currentTarget.value || null, after: null})}><option value="">all</option>{KINDS.map(each => <option key={each} value={each}>{jobKind(each)}</option>)}</select></label><Segments label="State" options={[['all', 'All'], ['running', 'Running'], ['failed', 'Failed']] as const} value={state as 'all'} onChange={value => choose({state: value === 'all' ? null : value, after: null})} /></>} />
     <Tabs group="jobs" />
     {running.map(job => <Panel key={job.id} title={<a href={pageOf('jobs', job.id)}>{capital(jobKind(job.kind))}: {what(job)}</a>} sub={`${job.stage ?? 'starting'} · attempt ${job.attempt} · started ${job.started_at ? writeClock(job.started_at) : '–'}`}
@@ -114,7 +116,7 @@ export default function Jobs(): JSX.Element {
         <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td class="n" /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
         </tbody>
       </table></div>}</Shown>
-      {(read.data?.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{read.data?.next_cursor && <button type="button" class="btn" onClick={() => choose({after: read.data!.next_cursor})}>Older</button>}</p>}
+      <Pager next={read.data?.next_cursor} />
     </Panel>
   </>;
 }

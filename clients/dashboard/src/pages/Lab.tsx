@@ -7,12 +7,14 @@ import {writeTick, writeQuantity} from '../format/number';
 import {writeToday, writeWhen} from '../format/time';
 import {capital, conditionName, countWord, jobKind, plural, writeUnit} from '../format/words';
 import {MarkAt} from '../figure/MarkAt';
+import {decadeTicks, logarithmic} from '../figure/scale';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {LastResult, pageOfResult} from '../shell/LastResult';
 import {Sought} from '../shell/Sought';
 import {curlOf, copy} from '../shell/copy';
+import {Pager} from '../shell/Pager';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 
@@ -44,10 +46,8 @@ interface Scale { (value: number): number; ticks: number[] }
 function levelScale(values: number[], width: number): Scale {
   const low = Math.min(...values) / 1.4;
   const high = Math.max(...values) * 1.4;
-  const x = (value: number): number => 10 + (width - 20) * Math.log(value / low) / Math.log(high / low);
-  const ticks: number[] = [];
-  for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const digit of [1, 2, 5]) { const value = Number(`${digit}e${e}`); if (value >= low && value <= high) ticks.push(value); }
-  return Object.assign(x, {ticks: ticks.length > 7 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
+  const ticks = decadeTicks(low, high, [1, 2, 5]);
+  return Object.assign(logarithmic(low, high, 10, width - 10), {ticks: ticks.length > 7 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
 }
 
 const WIDTH = 460;
@@ -105,7 +105,7 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
       {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18" preserveAspectRatio="xMinYMid meet">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
       </tbody>
     </table></div>
-    {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>First</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}
+    <Pager next={next} back="First" on={`Next ${PAGE}`} />
   </Panel>;
 }
 

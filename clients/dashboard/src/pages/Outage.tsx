@@ -6,6 +6,7 @@ import {capital, plural, writeSentence} from '../format/words';
 import {Drawn} from '../figure/Drawn';
 import type {Table} from '../figure/export';
 import {choose, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {MadeBy, Report} from '../shell/Report';
@@ -50,7 +51,7 @@ function Found({stored, evaluation}: {stored: StoredEvaluation; evaluation: Eval
       </Drawn>
     </div>
     <div class="grid wide-side">
-      <Drawn {...common} name="outage-errors" title="Horizontal error by filter" sub="mean over runs, 95 %" table={() => errorTable(ranked)} how={() => <p>Every filter sees the same simulated drives. The error is that of the horizontal position at the end of an outage. <a href="/docs/navigation">The manual</a> describes scenario, filters and intervals. Seed {evaluation.seed}, algorithm {evaluation.algorithm_version}.</p>}><Errors filters={ranked} colours={colours} /></Drawn>
+      <Drawn {...common} name="outage-errors" title="Horizontal error by filter" sub="mean over runs, 95 %" table={() => errorTable(ranked)} how={() => <><p>Every filter sees the same simulated drives. The error is that of the horizontal position at the end of an outage. <a href="/docs/navigation">The manual</a> describes scenario, filters and intervals. Seed {evaluation.seed}, algorithm {evaluation.algorithm_version}.</p><RunAgain job={stored.id} /></>}><Errors filters={ranked} colours={colours} /></Drawn>
       <Drawn {...common} name="outage-nees" title="Does the filter know" sub="NEES, 2 is honest: ● mean, ○ each outage" table={() => neesTable(ranked)}><Nees filters={ranked} colours={colours} /></Drawn>
     </div>
     <div class="grid wide-side">

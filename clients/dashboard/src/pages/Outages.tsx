@@ -6,6 +6,7 @@ import type {List} from '../api/documents';
 import {writeWhen} from '../format/time';
 import {go, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Refusal, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -14,9 +15,11 @@ import type {StoredEvaluation} from './outage/documents';
 const SCENARIOS = ['paper', 'paper-position-only', 'paper-nhc', 'paper-s-curves'];
 
 export default function Outages(): JSX.Element {
-  const alone = usePlace().parts[1] === 'new';
+  const {parts, query} = usePlace();
+  const alone = parts[1] === 'new';
+  const after = query.get('after');
   useTitle('Outages');
-  const read = useRead<List<StoredEvaluation>>('/v1/outage-evaluations?sort=-created_at&limit=50', 5000);
+  const read = useRead<List<StoredEvaluation>>(`/v1/outage-evaluations?sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`, 5000);
   const [scenario, setScenario] = useState('paper');
   const [runs, setRuns] = useState('200');
   const [problem, setProblem] = useState<Problem>();
@@ -30,8 +33,8 @@ export default function Outages(): JSX.Element {
       {problem && <Refusal problem={problem} />}
       <p class="note">200 runs take about three minutes. A scenario of your own goes in by <a href="/docs/navigation">the API</a>.</p>
     </Panel>}
-    {!alone && <Panel title="Evaluations" sub="newest first"><Shown read={read}>{list => list.items.length === 0 ? <p class="sec">None yet. The scenario “paper” simulates the drive of Radi et al. (2017) with four outages.</p> : <table class="stacked">
+    {!alone && <Panel title="Evaluations" sub="newest first"><Shown read={read}>{list => list.items.length === 0 ? <p class="sec">None yet. The scenario “paper” simulates the drive of Radi et al. (2017) with four outages.</p> : <><table class="stacked">
       <thead><tr><th scope="col">scenario</th><th scope="col" class="n">runs</th><th scope="col">state</th><th scope="col">when</th></tr></thead>
-      <tbody>{list.items.map(each => <tr key={each.id}><th scope="row"><a href={pageOf('outages', each.id)}>{each.scenario_name}</a></th><td class="n" data-label="runs">{each.runs}</td><td>{each.state}{each.finished_at ? '' : `, ${Math.round(each.progress * 100)} %`}</td><td class="sec">{writeWhen(each.created_at)}</td></tr>)}</tbody></table>}</Shown></Panel>}
+      <tbody>{list.items.map(each => <tr key={each.id}><th scope="row"><a href={pageOf('outages', each.id)}>{each.scenario_name}</a></th><td class="n" data-label="runs">{each.runs}</td><td>{each.state}{each.finished_at ? '' : `, ${Math.round(each.progress * 100)} %`}</td><td class="sec">{writeWhen(each.created_at)}</td></tr>)}</tbody></table><Pager next={list.next_cursor} /></>}</Shown></Panel>}
   </>;
 }

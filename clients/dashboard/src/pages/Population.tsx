@@ -11,6 +11,7 @@ import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {Report} from '../shell/Report';
 import {curlOf} from '../shell/copy';
+import {NextRows} from '../shell/Pager';
 import {Panel, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {sourceOf, useSheets, writeStated, type DataSheetDocument, type SensorSheet} from './datasheet/documents';
@@ -77,7 +78,7 @@ function Devices({group, byName, path, model, from}: {group: Group; byName: bool
         {group.rows.map(row => { const place = places.get(row.parameter); if (!place) return <td key={row.parameter} data-label={row.parameter} title={row.left_out.find(each => each.device === device)?.reason}>…</td>; const written = writeQuantity(place.estimate); return <td key={row.parameter} data-label={row.parameter}><b>{written.value}</b> <span class="ci">{written.interval}</span></td>; })}
         <td>{outlying.length > 0 ? outlying.map(place => <div key={place.device}><span class="g warn" aria-hidden="true">△ </span>not of the line, {writeP(place.p_holm)}</div>) : <span class="sec">{places.get('N')?.quantile != null ? `above ${writeShare(places.get('N')!.quantile!)} in N` : '–'}</span>}</td>
       </tr>; })}</tbody></table></div>
-    {(from > 0 || all.length > from + ROWS) && <p class="row">{from > 0 && <button type="button" class="btn" onClick={() => choose({from: null})}>First</button>}{all.length > from + ROWS && <button type="button" class="btn" onClick={() => choose({from: String(from + ROWS)})}>Next {ROWS}</button>}</p>}
+    <NextRows from={from} rows={ROWS} count={all.length} />
     <p class="note">… the data of the device do not identify it. A share says in how many of 100 devices with such data the value would be lower.</p>
   </Panel>;
 }

@@ -4,8 +4,9 @@ import {useState} from 'preact/hooks';
 import {useRead} from '../api/client';
 import type {Device, List} from '../api/documents';
 import {listWords, plural} from '../format/words';
-import {choose, go, pageOf, usePlace} from '../route';
+import {go, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {NextRows} from '../shell/Pager';
 import {Panel, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -73,7 +74,7 @@ export default function Populations(): JSX.Element {
         <div class="scroll"><table class="stacked">
           <thead><tr><th scope="col">model or IMU</th><th scope="col" class="n">devices</th><th scope="col">data sheet</th><th scope="col" class="n">populations</th><th scope="col">not of the line</th></tr></thead>
           <tbody>{shown.map((model, i) => <Row key={model.name} model={model} ask={i < ASKED} />)}</tbody></table></div>
-        {(from > 0 || models.length > from + ROWS) && <p class="row">{from > 0 && <button type="button" class="btn" onClick={() => choose({from: null})}>First</button>}{models.length > from + ROWS && <button type="button" class="btn" onClick={() => choose({from: String(from + ROWS)})}>Next {ROWS}</button>}</p>}
+        <NextRows from={from} rows={ROWS} count={models.length} />
       </Panel>}</Shown>
   </>;
 }

@@ -10,6 +10,7 @@ import {unitsFor} from '../format/units';
 import {capital, conditionName, plural, sensorOf, writeUnit} from '../format/words';
 import {defaultReadout, Figure} from '../figure/Figure';
 import {choose, go, hover, pageOf, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Characterise} from '../shell/Characterise';
 import {Delete} from '../shell/Delete';
 import {Head, Verdict} from '../shell/Head';
@@ -20,6 +21,7 @@ import {curlOf} from '../shell/copy';
 import {say} from '../shell/say';
 import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
+import {useWide} from '../shell/wide';
 import {describe, variancePlots, type Curve} from './recording/plots';
 import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Side';
 import {Leftover} from './recording/Leftover';
@@ -85,6 +87,7 @@ function How({result, channel}: {result: Characterisation; channel: Characterise
       {c.contamination && <><dt>gross errors</dt><dd>{c.contamination.verdict}, {writeP(c.contamination.p)}, {writeCount(c.contamination.flagged_samples)} samples flagged</dd></>}
     </dl>
     {c.warnings.map(warning => <p key={warning} class="note"><span class="g warn" aria-hidden="true">△ </span>{warning}</p>)}
+    <RunAgain job={result.job} />
   </>;
 }
 
@@ -113,6 +116,11 @@ function Evidence({recording, result, channel, shape}: {recording: Recording; re
     if (pinned) hover({tau: x === null ? null : String(Number(x.toPrecision(6)))});
   };
   const path = `/v1/recordings/${recording.id}/characterisation?channel=${encodeURIComponent(c.channel)}`;
+  const isWide = useWide();
+  const file = <div class="grid two no-top">
+    <OtherNames channel={c} />
+    <FilePanel recording={recording} result={result} />
+  </div>;
   const lastEdf = c.allan.edf?.[c.allan.edf.length - 1];
   return <><div class="grid main-side evidence">
     <div class="stack">
@@ -126,16 +134,14 @@ function Evidence({recording, result, channel, shape}: {recording: Recording; re
         note={<><span class="no-print">Equal decades on both axes, so that a slope of −½ looks like one.</span>{lastEdf ? ` The last point has ${writeNumber(lastEdf, 2)} equivalent degrees of freedom; its interval says so.` : ''}{chosen > 0 && other.problem ? ` ${other.problem.document.detail}` : ''}</>} />
       <Spectrum recording={recording} channel={c} fit={fit} implied={implied} unit={unit} components={shown.components} tau={tau} onTau={point} />
       <Leftover recording={recording} channel={c} fit={fit} fitId={channel.fit_ids[chosen]} />
-      <div class="grid two no-top">
-        <OtherNames channel={c} />
-        <FilePanel recording={recording} result={result} />
-      </div>
+      {!isWide && file}
     </div>
     <div class="stack side">
       {fit && <FittedModel fit={fit} />}
       {c.fits.length > 0 && <Ranking fits={c.fits} chosen={chosen} onChoose={i => choose({model: i === 0 ? null : c.fits[i]!.model})} />}
       <Ieee channel={c} />
       <Shape recording={recording} channel={c} read={shape} />
+      {isWide && file}
     </div>
   </div>
   <div class="print-only method foot"><How result={result} channel={channel} /><SpectrumMethod /></div></>;

@@ -9,6 +9,7 @@ import {conditionName, plural, writeSentence, writeUnit} from '../format/words';
 import {defaultReadout, Figure} from '../figure/Figure';
 import type {Plot, Series} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
+import {RunAgain} from '../shell/Again';
 import {Head, Verdict} from '../shell/Head';
 import {MadeBy, Report} from '../shell/Report';
 import {say} from '../shell/say';
@@ -72,12 +73,12 @@ function RecordingLink({id}: {id: string}): JSX.Element {
   return <><a href={pageOf('recordings', id)}>{read.data?.metadata.id ?? id}</a>{read.data && <span class="sec"> {conditionName(read.data.metadata.condition)}{read.data.duration_s !== null && `, ${writeDuration(read.data.duration_s)}`}</span>}</>;
 }
 
-function Shown({document}: {document: Document}): JSX.Element {
+function Shown({document, id}: {document: Document; id: string}): JSX.Element {
   const {query} = usePlace();
   const wanted = Number(query.get('unit') ?? 0);
   const unit = document.units[wanted] ?? document.units[0];
   const plots = useMemo(() => unit ? ratioPlots(unit.tests) : [], [unit]);
-  const path = `/v1/regressions/${document.id}`;
+  const path = `/v1/regressions/${id}`;
   const recordings = [...document.arms.baseline.sessions, ...document.arms.candidate.sessions].flatMap(session => session.recordings);
   return <>
     <Verdict summary={document.summary} />
@@ -85,8 +86,8 @@ function Shown({document}: {document: Document}): JSX.Element {
     {document.units.length > 1 && <Segments label="Axis" options={document.units.map((each, i) => [String(i), axisName(each)] as const)} value={String(document.units.indexOf(unit!))} onChange={value => choose({unit: value === '0' ? null : value})} />}
     {unit && <div class="grid wide-side">
       <Figure name={`regression-${document.device}-${unit.axis}`} title={`Allan deviation, ${axisName(unit)}`} describe={`Baseline and candidate over each other; below, candidate over baseline at each averaging time with simultaneous intervals; ${unit.tests.filter(test => test.verdict === 'beyond').length} beyond the margin.`} plots={plots}
-        readout={x => <><b>τ {writeNumber(x, 4)} s</b>{plots.map(plot => <span key={plot.id}>{defaultReadout(plot, x)}</span>)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
-        how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl></>} />
+        readout={x => <><b>τ {writeNumber(x, 4)} s</b>{plots.map(plot => <span key={plot.id}>{defaultReadout(plot, x)}</span>)}</>} source={`driftlab, ${id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
+        how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl><RunAgain job={id} /></>} />
       <div class="stack"><Tests unit={unit} />
         <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.filter(each => each.sentence).length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}>{finding.verdict !== 'ok' && <span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>}{writeSentence(finding.sentence!)}</li>)}{document.comparability.filter(each => each.sentence).map(each => <li key={each.item}>{writeSentence(each.sentence!)}</li>)}</ul>}
           {document.versus_previous && <p class="note">Against {document.versus_previous.label}: {document.versus_previous.sentence}</p>}</Panel>
@@ -125,6 +126,6 @@ export default function Regression(): JSX.Element {
     {job.data?.finished_at && job.data.state !== 'succeeded' && <p class="verdict"><span class="g bad" aria-hidden="true">✗ </span>{job.data.problem?.detail ?? `The run is ${job.data.state}.`}</p>}
     {read.problem && <Refusal problem={read.problem} again={read.again} />}
     {document && <MadeBy job={id} document={`/v1/regressions/${id}`} />}
-    {document ? <Shown document={document} /> : (job.data?.state ?? 'succeeded') === 'succeeded' && !job.problem && !read.problem && <Hairlines />}
+    {document ? <Shown document={document} id={id} /> : (job.data?.state ?? 'succeeded') === 'succeeded' && !job.problem && !read.problem && <Hairlines />}
   </>;
 }

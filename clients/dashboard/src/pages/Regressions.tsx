@@ -7,6 +7,7 @@ import {writeWhen} from '../format/time';
 import {plural} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {VERDICT_MARKS, type Regression, type RegressionRun} from './regression/documents';
@@ -58,7 +59,7 @@ export default function Regressions(): JSX.Element {
         <pre tabIndex={0}><code>{`curl --json '{"kind": "regress", "inputs": {"device": "phone-07", "baseline": {"recordings": [{"recording": "rec_…"}]},\n  "candidate": {"recordings": [{"recording": "rec_…"}]}}}' ${window.location.origin}/v1/jobs`}</code></pre><p><a href="/docs/regression">How it is decided</a></p></Panel>
       : <>
         <Panel title="History" sub="● pass ■ fail ○ inconclusive" tools={<div class="tools"><label class="nowrap">parameter <select value={parameter} onChange={event => choose({param: event.currentTarget.value === FIRST ? null : event.currentTarget.value})}>{names.map(name => <option key={name} value={name}>{parameterName(name)}</option>)}</select></label></div>}><Runs groups={groups} />
-          {(after || list.next_cursor) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Next {SHOWN}</button>}</p>}</Panel>
+          <Pager next={list.next_cursor} on={`Next ${SHOWN}`} /></Panel>
         {groups.slice(0, DRAWN).map(([key, runs]) => <History key={key} title={key} parameter={parameter} runs={runs} path={path} />)}
       </>}</Shown>
   </>;

@@ -10,6 +10,7 @@ import {Delete} from '../shell/Delete';
 import {Head} from '../shell/Head';
 import {copy, curlOf} from '../shell/copy';
 import {say} from '../shell/say';
+import {Pager} from '../shell/Pager';
 import {Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {hears, isPaused, receiverOf, type Delivery, type Issued, type WebhookDocument} from './webhook/documents';
@@ -42,7 +43,7 @@ function Deliveries({hook, asked}: {hook: WebhookDocument; asked: number}): JSX.
           <td class="nowrap"><span class={`g ${tone}`} aria-hidden="true">{mark} </span>{word}{each.next_attempt_at ? `, again at ${writeClock(each.next_attempt_at)}` : ''}</td><td class="n" data-label="attempts">{each.attempts}</td>
           <td class="sec">{each.last_error ?? (each.last_status === null ? '–' : String(each.last_status))}</td><td class="sec nowrap" title={writeFull(each.created_at)}>{writeWhen(each.created_at)}</td>
           <td class="n"><button type="button" class="link touch" onClick={() => copy(JSON.stringify(each.message, null, 2), 'The message is')}>Copy<span class="visually-hidden"> the message {each.id}</span></button></td></tr>; })}</tbody></table></div>
-      {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}</>}</Shown>
+      <Pager next={list.next_cursor} /></>}</Shown>
   </Panel>;
 }
 

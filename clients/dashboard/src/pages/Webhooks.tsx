@@ -4,8 +4,9 @@ import {useState} from 'preact/hooks';
 import {Problem, send, useRead} from '../api/client';
 import type {List} from '../api/documents';
 import {writeWhen} from '../format/time';
-import {choose, pageOf, usePlace} from '../route';
+import {pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Pager} from '../shell/Pager';
 import {Panel, Refusal, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -62,6 +63,6 @@ export default function Webhooks(): JSX.Element {
       <div class="scroll"><table class="stacked">
         <thead><tr><th scope="col">receiver</th><th scope="col">for whom</th><th scope="col">hears of</th><th scope="col">state</th><th scope="col">since</th></tr></thead>
         <tbody>{list.items.map(hook => <tr key={hook.id}><th scope="row"><a href={pageOf('webhooks', hook.id)}>{receiverOf(hook.url)}</a></th><td class="sec">{hook.description || '–'}</td><td class="sec">{hears(hook)}</td><td><State hook={hook} /></td><td class="sec nowrap">{writeWhen(hook.created_at)}</td></tr>)}</tbody></table></div>
-      {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}</>}</Shown></Panel>
+      <Pager next={list.next_cursor} /></>}</Shown></Panel>
   </>;
 }

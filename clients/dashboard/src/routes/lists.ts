@@ -8,6 +8,7 @@ export {default as Investigations} from '../pages/Investigations';
 export {default as Outages} from '../pages/Outages';
 export {default as Jobs} from '../pages/Jobs';
 export {default as Job} from '../pages/Job';
+export {default as RunAgain} from '../pages/RunAgain';
 export {default as Upload} from '../pages/Upload';
 export {default as Docs} from '../pages/Docs';
 export {default as Resource} from '../pages/Resource';

@@ -10,7 +10,8 @@ interface Place { href: string; recording: string | null; channel?: string | nul
 // The page of a result; the API's address is the page's with /v1 before it.
 export function pageOfResult({href, recording, channel}: Place): string {
   if (recording) return `${pageOf('recordings', recording)}${channel ? `?ch=${encodeURIComponent(channel)}` : ''}`;
-  const [, , group = '', id = ''] = href.split('/');
+  const [path = '', query] = href.split('?');
+  const [, , group = '', id = new URLSearchParams(query).get('model') ?? ''] = path.split('/');
   return pageOf({'outage-evaluations': 'outages'}[group] ?? group, id);
 }
 

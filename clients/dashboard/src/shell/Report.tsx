@@ -28,7 +28,7 @@ function printed(): void {
 }
 
 // Whether the page lies on paper: then it reads what only a report shows.
-function usePaper(): boolean {
+export function usePaper(): boolean {
   const [paper, setPaper] = useState(() => document.documentElement.classList.contains('paper'));
   useEffect(() => { readers.add(setPaper); setPaper(document.documentElement.classList.contains('paper')); return () => { readers.delete(setPaper); }; }, []);
   return paper;

@@ -3,8 +3,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any, Literal, cast
+from urllib.parse import quote
 
-from ..contract import DataSheet, RegressionAnchor
+from ..contract import DataSheet, PooledSensorStructure, RegressionAnchor
 from ..contract import Export, ExportTarget, Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
 from ..contract import Investigation as InvestigationDocument
 from ..contract import ParameterTable as ParameterTableDocument
@@ -64,6 +65,13 @@ class ResultRoutes(Routes):
         """The same table as the daemon writes it: aligned text, CSV, Markdown or LaTeX (text/x-latex)."""
         query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model, "reference": reference}
         return self._text("getParameterTable", media, None, query, wait_s)
+
+    @operation("getStructure")
+    def structure(self, *recordings: str | tuple[str, str]) -> PooledSensorStructure:
+        """Whether two to eight recordings have one structure: ids, or ids with a channel, of which an id alone means the first."""
+        asked = [(one, "") if isinstance(one, str) else one for one in recordings]
+        of = ",".join(f"{id}:{quote(channel, safe='')}" if channel else id for id, channel in asked)
+        return cast(PooledSensorStructure, self._get("getStructure", None, {"of": of}))
 
     @operation("getTrends")
     def trends(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",

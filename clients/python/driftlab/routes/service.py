@@ -4,7 +4,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Literal, cast
 
-from ..contract import Attention, Backup, ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
+from ..contract import (Attention, Backup, ContractAnswer, GetCountsAnswer, GetWorkersAnswer, HealthAnswer, ListDocumentationAnswer,
+                        ReadinessAnswer)
 from .base import PAGE, Routes, Sort, operation
 
 
@@ -34,6 +35,11 @@ class ServiceRoutes(Routes):
         """How many devices and recordings there are, and jobs that live; with `since` (RFC 3339) jobs that ended from then on, with
         `include` also the newest results that must be read first."""
         return cast(GetCountsAnswer, self._get("getCounts", None, {"since": since, "include": include}))
+
+    @operation("getWorkers")
+    def workers(self) -> GetWorkersAnswer:
+        """How many jobs run at a time, in all processes that have the store."""
+        return cast(GetWorkersAnswer, self._get("getWorkers"))
 
     @operation("listAttention")
     def attention(self, *, device: str | None = None, since: str | None = None, sort: Sort | None = None,

@@ -144,6 +144,28 @@ TEST_F(PostgresCoordinationTest, AKeyIsOnesUntilItIsGivenBackAndWhereItsConnecti
   EXPECT_TRUE(*second->coordination()->take_key("k"));
 }
 
+TEST_F(PostgresCoordinationTest, AllWorkersAreThoseOfTheProcessesThatAreThere) {
+  const auto first = open_first();
+  first->coordination()->offer_workers(2);
+  EXPECT_EQ(*first->coordination()->workers(), 2);
+  auto second = open();
+  second->coordination()->offer_workers(3);
+  EXPECT_EQ(*first->coordination()->workers(), 5);
+  EXPECT_EQ(*second->coordination()->workers(), 5);
+  EXPECT_TRUE(*first->coordination()->take_key("k")) << "which is no worker";
+  ASSERT_TRUE(PostgresCluster::of_this_process().cut_connections());
+  const auto all = [&] { return first->coordination()->workers().value_or(-1); };
+  const auto second_is_back = second->coordination()->workers();
+  ASSERT_TRUE(second_is_back) << second_is_back.error().message;
+  EXPECT_EQ(all(), 5) << "held again by connections that were made anew";
+  second.reset();
+  const auto until = std::chrono::steady_clock::now() + 20s;
+  while (all() != 2 && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(20ms);
+  }
+  EXPECT_EQ(all(), 2);
+}
+
 TEST_F(PostgresCoordinationTest, TheOthersHearOfJobsTokensAndWords) {
   Ear of_first;  // outlives who tells it
   Ear of_second;

@@ -11,6 +11,7 @@ import {Characterise} from '../../shell/Characterise';
 import {Delete} from '../../shell/Delete';
 import {copy, curlOf} from '../../shell/copy';
 import {say} from '../../shell/say';
+import {Pager} from '../../shell/Pager';
 import {Panel, Refusal, Shown} from '../../shell/states';
 import {qualityWords} from '../Recording';
 
@@ -83,7 +84,7 @@ export function Recordings({device, axis}: {device: Device; axis: string | null}
           <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec"><ResultCell recording={recording} attention={attention.data} /></td><td class="sec">{writeWhen(recording.created_at)}</td>
         </tr>)}</tbody></table></div>
       {(list.items.length > PRINTED || list.next_cursor) && <p class="print-only note">The newest {PRINTED} of {list.next_cursor ? `more than ${list.items.length}` : list.items.length} recordings; the page has all.</p>}
-      {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
+      <Pager next={list.next_cursor} />
       {chosen.length > 0 && <Chosen ids={chosen} names={chosen.map(id => { const found = list.items.find(each => each.id === id); return found ? nameOf(found) : id; })} onDeleted={read.again} />}
     </>}</Shown>
   </Panel>;

@@ -3,6 +3,7 @@ import type {JSX} from 'preact';
 import {writeP, writeQuantity, writeTick} from '../../format/number';
 import type {Quantity} from '../../api/documents';
 import {conditionName, conditionText, plural, writeUnit} from '../../format/words';
+import {decadeTicks, logarithmic} from '../../figure/scale';
 import {choose, usePlace} from '../../route';
 import {Segments} from '../../shell/states';
 import {colours, columnName, uniqueName, withDensity, type Cell, type ParameterTable, type TableRow} from './documents';
@@ -18,9 +19,9 @@ function scaleOf(table: ParameterTable, key: string): Scale | null {
   if (values.length === 0) return null;
   const low = Math.min(...values) / 1.15;
   const high = Math.max(...values) * 1.15;
-  const x = (value: number): number => Math.min(Math.max(6 + (WIDTH - 12) * Math.log(value / low) / Math.log(high / low), 0), WIDTH);
-  const all: number[] = [];
-  for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const digit of [1, 2, 5]) { const tick = Number(`${digit}e${e}`); if (tick >= low && tick <= high) all.push(tick); }
+  const at = logarithmic(low, high, 6, WIDTH - 6);
+  const x = (value: number): number => Math.min(Math.max(at(value), 0), WIDTH);
+  const all = decadeTicks(low, high, [1, 2, 5]);
   const ticks = all.filter((tick, i) => i === 0 || x(tick) - x(all[i - 1]!) > 26 || all.length < 4);
   return Object.assign(x, {ticks: ticks.length > 4 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
 }

@@ -11,9 +11,10 @@ export interface SheetComparison {
   sensor: string; source: string; condition: string;
   figures: {parameter: 'N' | 'B'; stated: number; unit: string; measured: Quantity | null; ratio: number | null; ci95: Ends | null; verdict: 'agrees' | 'above' | 'below' | null}[];
 }
+export interface StructureDocument { verdict: 'one_structure' | 'changes' | 'undecided'; statement: string; common: string; p: number | null; dof?: number | null; ranking: {model: string; criterion: number | null}[]; by_condition: {label: string; model: string}[] }
 export interface ParameterTable {
   device: string; sensor: string; axis: string | null; method: string; model: string | null; reference: string | null; model_note: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
-  pooling: {state: string; job: string | null; reason: string | null}; summary?: Summary; data_sheet?: SheetComparison;
+  pooling: {state: string; job: string | null; reason: string | null}; structure?: StructureDocument; summary?: Summary; data_sheet?: SheetComparison;
 }
 export interface Trend {
   parameter: string; unit: string | null; against: {kind: string; unit: string};

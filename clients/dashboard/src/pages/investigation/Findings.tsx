@@ -1,9 +1,9 @@
 // The findings of one cause, one row each: where, how large on an axis that they share, how sure, and what is behind them.
-import {scaleLinear} from 'd3-scale';
 import type {JSX} from 'preact';
 import type {Quantity} from '../../api/documents';
 import {writeNumber, writeQuantity, writeTick} from '../../format/number';
 import {countWord, listWords, symbolOf, writeSentence, writeUnit} from '../../format/words';
+import {linear, ticksBetween} from '../../figure/scale';
 import {finite} from '../../figure/spec';
 import {choose, usePlace} from '../../route';
 import {axisOf, causeName, checkKind, columnOf, keyOf, restsOn, type Check, type Finding, type Investigation} from './documents';
@@ -17,8 +17,8 @@ type Axis = (value: number) => number;
 function axisFor(quantities: readonly (Quantity | undefined)[]): {x: Axis; ticks: number[]} | null {
   const ends = quantities.flatMap(quantity => [quantity?.value, ...(quantity?.ci95 ?? [])]).filter(finite);
   if (quantities.length < 2 || ends.length === 0) return null;
-  const x = scaleLinear().domain([Math.min(0, ...ends), Math.max(0, ...ends)]).range([6, WIDTH - 8]);
-  return {x, ticks: x.ticks(3)};
+  const [low, high] = [Math.min(0, ...ends), Math.max(0, ...ends)];
+  return {x: linear(low, high, 6, WIDTH - 8), ticks: ticksBetween(low, high, 3)};
 }
 
 function Whisker({quantity, x}: {quantity: Quantity | undefined; x: Axis}): JSX.Element {

@@ -1,12 +1,15 @@
 // Measured against simulated: what the baseline says, and what remains against the extended model, on the same axes.
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
-import {Figure} from '../../figure/Figure';
+import {Figure, Tools} from '../../figure/Figure';
+import {save} from '../../figure/export';
+import {Spectrogram, ratiosCsv} from '../../figure/Spectrogram';
 import {finite, type Plot, type Series, type Zone} from '../../figure/spec';
 import {writeTick} from '../../format/number';
 import {capital, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 import {curlOf} from '../../shell/copy';
+import {Panel} from '../../shell/states';
 import {causeName, columnOf, frequencyOf, keyOf, type Finding, type Investigation, type SeriesDocument} from './documents';
 
 const over = (values: readonly (number | null)[], by: readonly (number | null)[]): (number | null)[] => values.map((value, i) => { const base = by[i]; return value === null || base === null || base === undefined || base <= 0 ? null : value / base; });
@@ -72,6 +75,8 @@ export function Measured({found, one, names}: {found: Investigation; one: Series
   const left = leftOver(one);
   const source = `driftlab, ${found.id}, ${columnOf(one.channel)}`;
   const curl = curlOf(`/v1/investigations/${found.id}`);
+  const changes = one.spectrogram;
+  const picture = 'Spectrogram of the innovations';
   const picked = found.findings.find(finding => keyOf(finding, found.findings) === chosen);
   return <div class="grid wide-side">
     <Figure name={`${found.id}-spectrum`} title="Spectrum" sub={<span>{columnOf(one.channel)}, mean of all recordings · <span style={{color: 'var(--robust)'}}>highest of each bin</span> · what chance reaches</span>} plots={spectra} source={source} curl={curl}
@@ -82,5 +87,9 @@ export function Measured({found, one, names}: {found: Investigation; one: Series
       sub={<span><span style={{color: 'var(--model)'}}>band: a right model, 95 %</span></span>} plots={innovations} source={`${source}, ${recording}`} curl={curl}
       describe={`Wavelet variance of the innovations of ${names.get(recording) ?? recording} over that of a right model by scale, before and after the findings: what the checks judge.`}
       note="One is right; vermilion lies outside the range of one scale alone. The checks judge all scales of all recordings together." />}
+    {changes && <Panel title={picture} sub={names.get(changes.recording) ?? changes.recording} tools={<Tools title={picture} curl={curl} onCsv={() => save(`${found.id}-spectrogram.csv`, 'text/csv', ratiosCsv(changes))} />}>
+      <Spectrogram spectrogram={changes} name={picture} />
+      <p class="note">What is left over the level of a right model, where that changes most; full colour is ten times more or less.</p>
+    </Panel>}
   </div>;
 }

@@ -1,4 +1,5 @@
 import type {Nullable, Quantity} from '../../api/documents';
+import type {Ratios} from '../../figure/Spectrogram';
 import {spaced} from '../../format/words';
 
 export interface Band { q025: Nullable; median: Nullable; q975: Nullable }
@@ -8,6 +9,7 @@ export interface SeriesDocument {
   spectrum: {f_hz: number[]; measured: Nullable; highest: Nullable; baseline: Band; chance: Nullable; remaining: Nullable; highest_remaining: Nullable};
   innovations?: {recording: string; scale_s: number; before: number | null; after: number | null; q025: number | null; q975: number | null}[];
   course: {time_s: number[]; error: Nullable; effect: Nullable};
+  spectrogram?: Ratios & {recording: string};
 }
 export interface Finding {
   cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; rivals?: {cause: string; title: string; score: number | null}[]; channels: string[]; because: string[]; explanation: string; equation?: string; parameters: Record<string, Quantity>; score?: number | null;

@@ -1,8 +1,8 @@
 // Mean horizontal error of every filter, over all outages and at each of them, on one scale.
-import {scaleLinear} from 'd3-scale';
 import type {JSX} from 'preact';
 import {writeQuantity, writeTick} from '../../format/number';
 import {useWidth} from '../../figure/Figure';
+import {ticksBetween} from '../../figure/scale';
 import type {Filter} from './documents';
 import type {Quantity} from '../../api/documents';
 
@@ -27,7 +27,7 @@ export function Errors({filters, colours}: {filters: readonly Erring[]; colours:
   const wide = (width - NAMES - LABEL) / facets.length - GAP;
   const height = HEAD + filters.length * ROW + 20;
   const bottom = height - 18;
-  const ticks = scaleLinear().domain([0, most]).ticks(Math.min(MOST_TICKS, Math.max(1, Math.floor(wide / 60))));
+  const ticks = ticksBetween(0, most, Math.min(MOST_TICKS, Math.max(1, Math.floor(wide / 60))));
   return <div class="scroll" ref={box} tabIndex={0} role="region" aria-label="Errors by filter"><svg viewBox={`0 0 ${width} ${height}`} width={width} height={height} role="img"
     aria-label={`Mean horizontal error: ${filters.map(filter => `${filter.name} ${writeQuantity(filter.mean_error_m).value} m ${writeQuantity(filter.mean_error_m).interval}`).join('; ')}.`}>
     {filters.map((filter, i) => <text key={filter.name} class="t" x="0" y={HEAD + i * ROW + ROW / 2 + 4} style={colours[i] === 'var(--measured)' ? undefined : {fill: colours[i]}}>{filter.name}</text>)}

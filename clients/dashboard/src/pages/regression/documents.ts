@@ -12,7 +12,7 @@ export interface Unit { device: string; condition: string; sensor: string; axis:
 export interface Finding { check: string; verdict: string; sentence: string | null }
 interface Arm { label: string | null; sessions: {session: string; recordings: string[]; duration_s: number}[]; rates_hz: number[]; merged: string[] }
 export interface Regression {
-  id: string; device: string; verdict: string; summary: Summary; scope_s: number; settings: Record<string, unknown>;
+  device: string; verdict: string; summary: Summary; scope_s: number; settings: Record<string, unknown>;
   arms: {baseline: Arm; candidate: Arm; history: Arm[]; excluded: {recording: string; reason: string}[]};
   look: {number: number; of: number}; units: Unit[]; findings: Finding[]; comparability: {item: string; comparable: boolean; sentence: string | null}[]; needs: Needs | null;
   versus_previous: {label: string; verdict: string; sentence: string} | null; critical: {seed?: number}; algorithm_version: number;
