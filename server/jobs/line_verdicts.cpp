@@ -31,7 +31,8 @@ Status add_line_verdicts(Store& store, JobResults& results) {
       if (!report) {
         return fail(report.error());
       }
-      const auto sentence = *report ? standing_out(**report, device->name) : std::nullopt;
+      const auto& line = *report;  // nothing where the devices are too few or too many
+      const auto sentence = line.has_value() ? standing_out(*line, device->name) : std::nullopt;
       results.verdicts.push_back(
           {.device_id = id, .channel = model, .level = "look", .verdict = sentence.value_or("")});
     }

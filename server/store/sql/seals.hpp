@@ -56,7 +56,7 @@ struct SealedTable {
 
 /// The row of that table, if its seal fits; `key` names it. Error: damaged_row.
 template <class Row>
-[[nodiscard]] Result<Row> sound_row(std::string_view table, std::string key, Row row, const std::string& seal) {
+[[nodiscard]] Result<Row> sound_row(std::string_view table, const std::string& key, Row row, const std::string& seal) {
   if (!seal_fits(seal, seal_of(row))) {
     return fail(damaged_row(table, sealed_table(table).noun, key));
   }
