@@ -113,6 +113,7 @@ TEST(Verdict, OneSentenceSaysWhatIsWrongAndWhatStillFails) {
   report.findings.front().channels.push_back({"b", "gx [deg/s]"});
   report.failed_before = 2;
   report.failed_after = 1;
+  report.unexplained.push_back({"gx", "Something else is left.", {"b/gx.kurtosis"}});
   report.unexplained.push_back({"gx", "Something is left.", {"a/gx.kurtosis"}});
   const Verdict verdict = verdict_of(report);
   EXPECT_EQ(verdict.level, VerdictLevel::Wrong);
