@@ -8,9 +8,9 @@
 /// Averaged. The running mean of m samples multiplies the spectrum by
 ///   sin^2(m w/2) / (m^2 sin^2(w/2)),   w = 2 pi f dt,
 /// which is zero at every multiple of 1/(m dt). It is a fact if the power about every zero is below 2 % of that midway
-/// between zeros, and in the ratio of the shape to it within a factor of 2, what the rounding adds taken off, and if the
-/// power on the flank of every zero is in that ratio too. A low-pass of another shape fails on the flank: one of second
-/// order has its zero at 1/(2 dt) as well, where what leaks from lower frequencies fills it.
+/// between zeros, and in the ratio of the shape to it within a factor of 2, what the rounding adds taken off, and if
+/// the power on the flank of every zero is in that ratio too. A low-pass of another shape fails on the flank: one of
+/// second order has its zero at 1/(2 dt) as well, where what leaks from lower frequencies fills it.
 #include <cstddef>
 #include <span>
 
