@@ -25,7 +25,7 @@ std::vector<Evidence> find(const ChannelGroup& group) {
     const Lattice lattice = find_lattice(channel.rows);
     const double si = lattice.step * channel.unit.factor;
     const double seen = noise_of_differences(*group.members[r].recording, channel);
-    const double noise = std::sqrt(std::max(seen * seen - si * si / 12.0, 1e-4 * si * si));
+    const double noise = noise_behind_lattice(seen, si);
     if (!(lattice.step > 0.0) || si < kNoticed * noise) {
       continue;
     }
