@@ -296,10 +296,8 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
       const double share = data.colour.band_limited() ? std::min(1.0, data.colour.corner_hz * data.dt_s) : 1.0;
-      const std::size_t before = checks.size();
       add("spectrum", "spectrum in sixteen bands", {band_statistic(e, share), 15.0});
-      std::for_each(checks.begin() + static_cast<std::ptrdiff_t>(before), checks.end(),
-                    [](Check& check) { check.of_spectrum = true; });
+      checks.back().of_spectrum = true;
     }
     wavelet_checks(member, e, data.used[r], data.dt_s, data.given ? 1.0 : all.mean_square, checks);
     Check tails;
