@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kPeriod = 32;  ///< codes, the longest
 /// The chance of n = 10^7 is then off by less than n exp(-2 kApart) = 10^-5.
 constexpr double kApart = 14.0;
-constexpr double kCoarse = 0.02;  ///< step over noise. Chosen, not measured
+constexpr double kCode = 0.02;  ///< step over noise. Chosen, not measured
 /// Kurtosis of differences above a normal variate's: a distribution with a peak is in no phase uniform. Chosen, not
 /// measured.
-constexpr double kTails = 0.25;
-constexpr std::size_t kBlock = 500;           ///< differences that tell how loud the noise is. Chosen, not measured
+constexpr double kPeaked = 0.25;
+constexpr std::size_t kPairsOfBlock = 500;    ///< differences that tell how loud the noise is. Chosen, not measured
 constexpr std::size_t kFewestCodes = 5000;    ///< samples
 constexpr std::size_t kRowsLooked = 100'000;  ///< that tell the lattice
 
@@ -68,7 +68,7 @@ void look_at(const ChannelGroup::Member& member, const std::vector<unsigned char
     if (i > 0 && used[i - 1] != 0) {
       differences.push_back(measured[begin + i] - measured[begin + i - 1]);
     }
-    if (differences.size() == kBlock) {
+    if (differences.size() == kPairsOfBlock) {
       take_block(differences, codes);
       differences.clear();
     }
@@ -86,8 +86,8 @@ Remainder uneven_codes(const ChannelGroup& group, const FullRate& data) {
   }
   const double samples = std::accumulate(codes.counts.begin(), codes.counts.end(), 0.0);
   const double noise = noise_behind_lattice(codes.quietest, step);
-  if (samples < kFewestCodes || codes.pairs == 0.0 || step < kCoarse * noise ||
-      codes.fourth / codes.pairs > 3.0 + kTails) {
+  if (samples < kFewestCodes || codes.pairs == 0.0 || step < kCode * noise ||
+      codes.fourth / codes.pairs > 3.0 + kPeaked) {
     return best;
   }
   const double deviation = noise / step;
