@@ -32,10 +32,11 @@ std::string sealed(const Values&... values) {
   return seal.finish();
 }
 
-std::string joined(const std::vector<std::string_view>& parts) {
+template <class Texts>
+std::string joined(const Texts& parts, std::string_view between) {
   std::string text;
-  for (const std::string_view part : parts) {
-    text.append(text.empty() ? "" : ", ").append(part);
+  for (const auto& part : parts) {
+    text.append(text.empty() ? std::string_view() : between).append(part);
   }
   return text;
 }
@@ -50,14 +51,6 @@ std::vector<std::string> texts_of(const Statement& row, std::size_t first, std::
     texts.push_back(row.text(static_cast<int>(i)));
   }
   return texts;
-}
-
-std::string joined_key(const std::vector<std::string>& key) {
-  std::string text;
-  for (const std::string& part : key) {
-    text += (text.empty() ? "" : "/") + part;
-  }
-  return text;
 }
 
 }  // namespace
@@ -160,7 +153,7 @@ std::string seal_of_texts(const std::vector<std::string_view>& texts) {
 Result<std::string> sound_text(std::string_view table, std::vector<std::string> texts, const std::string& seal) {
   if (!seal_fits(seal, seal_of_texts({texts.begin(), texts.end()}))) {
     const std::vector<std::string> key(texts.begin(), texts.end() - 1);
-    return fail(damaged_row(table, sealed_table(table).noun, joined_key(key)));
+    return fail(damaged_row(table, sealed_table(table).noun, joined(key, "/")));
   }
   return std::move(texts.back());
 }
@@ -174,10 +167,10 @@ const SealedTable& sealed_table(std::string_view name) {
 Result<ReadBack> read_back(Connection& connection, const SealedTable& table, const std::vector<std::string>& after,
                            int limit) {
   const std::size_t keys = table.key.size();
-  const std::string key = joined(table.key);
+  const std::string key = joined(table.key, ", ");
   std::string text = "SELECT " + key + ", seal, " + std::string(table.columns) + " FROM " + std::string(table.name);
   if (!after.empty()) {
-    text += " WHERE (" + key + ") > (" + joined(std::vector<std::string_view>(keys, "?")) + ")";
+    text += " WHERE (" + key + ") > (" + joined(std::vector<std::string_view>(keys, "?"), ", ") + ")";
   }
   Statement statement = connection.prepare(text + " ORDER BY " + key + " LIMIT ?");
   for (const std::string& part : after) {
@@ -201,7 +194,7 @@ Result<ReadBack> read_back(Connection& connection, const SealedTable& table, con
       read.bytes += static_cast<std::int64_t>(value.size());
     }
     if (!seal_fits(seal, seal_of_texts({values.begin(), values.end()}))) {
-      read.damaged.push_back(damaged_row_of(damaged_row(table.name, table.noun, joined_key(read.last))));
+      read.damaged.push_back(damaged_row_of(damaged_row(table.name, table.noun, joined(read.last, "/"))));
     }
   }
 }
@@ -211,7 +204,7 @@ Result<int> seal_rows(Connection& connection, const SealedTable& table, int limi
   const std::string name(table.name);
   std::vector<std::vector<std::string>> sealed_rows;  // the seal, then the key
   {
-    Statement statement = connection.prepare("SELECT " + joined(table.key) + ", " + std::string(table.columns) +
+    Statement statement = connection.prepare("SELECT " + joined(table.key, ", ") + ", " + std::string(table.columns) +
                                              " FROM " + name + " WHERE seal = '' LIMIT ?");
     statement.bind(limit);
     while (true) {
