@@ -248,6 +248,14 @@ bool rivals(const std::string& a, const std::string& b) {
   return lists(*find_cause(a), b) || lists(*find_cause(b), a);
 }
 
+std::string names_of(const std::vector<Finding>& findings) {
+  std::string names;
+  for (const Finding& finding : findings) {
+    names.append(" ").append(finding.evidence.cause->name).append(finding.evidence.ambiguous ? "?" : "");
+  }
+  return names;
+}
+
 TEST(HiddenEffects, TwoAtOnce) {
   const std::size_t studies = number_from("DRIFTLAB_HIDDEN_PAIRS", 60);
   accuracy::Section section("hidden/two");
@@ -270,6 +278,9 @@ TEST(HiddenEffects, TwoAtOnce) {
       continue;
     }
     ++made;
+    if (!asked_for(one.effect.cause) || !asked_for(two.effect.cause)) {
+      continue;
+    }
     const SimulatedStudy simulated = simulate_study(one.world, {one.effect, two.effect});
     const auto report = investigate::investigate(simulated.study, kQuiet);
     ASSERT_TRUE(report);
@@ -294,6 +305,8 @@ TEST(HiddenEffects, TwoAtOnce) {
           .append(two.effect.cause)
           .append(seed % 2 == 0 ? ", z = 12: " : ", z = 30: ");
       missed.append(one_found ? "only the first" : two_found ? "only the second" : "neither").append("\n");
+      std::printf("%s and %s, seed %d:%s\n", one.effect.cause.c_str(), two.effect.cause.c_str(), static_cast<int>(seed),
+                  names_of(report->findings).c_str());
     }
   }
   section.print(
