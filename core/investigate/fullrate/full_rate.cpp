@@ -1,12 +1,14 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 
 #include "core/investigate/fullrate/autoregression.hpp"
+#include "core/investigate/fullrate/gaps.hpp"
 #include "core/investigate/slow/whitening_walk.hpp"
 #include "core/investigate/study/measured_constants.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace driftlab::investigate {
@@ -100,32 +102,6 @@ bool spectra_fit(const FullRate& data) {
   return dof == 0.0 || (chi2 - dof) / std::sqrt(2.0 * dof) < 4.0;
 }
 
-/// Samples that are left out, on a straight line between their neighbours: a spectrum needs them all.
-Series bridged(const Series& values, const std::vector<unsigned char>& used) {
-  if (std::find(used.begin(), used.end(), 0) == used.end()) {
-    return values;
-  }
-  std::vector<double> whole = values.values();
-  for (std::size_t i = 0; i < whole.size();) {
-    if (used[i] != 0) {
-      ++i;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < whole.size() && used[end] == 0) {
-      ++end;
-    }
-    const double right = end < whole.size() ? whole[end] : i > 0 ? whole[i - 1] : 0.0;
-    const double left = i > 0 ? whole[i - 1] : right;
-    const auto steps = static_cast<double>(end - i + 1);
-    for (std::size_t k = i; k < end; ++k) {
-      whole[k] = left + (right - left) * static_cast<double>(k - i + 1) / steps;
-    }
-    i = end;
-  }
-  return whole;
-}
-
 /// Which samples of each member's analysed part are there and not masked.
 std::vector<std::vector<unsigned char>> samples_in_use(const ChannelGroup& group,
                                                        const std::vector<std::vector<unsigned char>>& mask) {
@@ -142,6 +118,42 @@ std::vector<std::vector<unsigned char>> samples_in_use(const ChannelGroup& group
     }
   }
   return all;
+}
+
+/// Whether what gaps add at all frequencies alike is little even where the noise is weakest.
+bool shows_colour(const Spectrum& s, const std::vector<double>& slow) {
+  constexpr double kLittle = 0.1;  // Chosen, not measured: of the power where it is weakest.
+  constexpr double kCells = 30.0;  // whose mean is the power at a frequency
+  double beside = 0.0;             // power beside the slow part
+  double all = 0.0;
+  double weakest = std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t j = 0; j < s.power.size(); ++j) {
+    beside += s.weight[j] * std::max(0.0, s.power[j] - slow[j]);
+    all += s.weight[j];
+    sum += s.weight[j] * s.power[j];
+    weight += s.weight[j];
+    if (weight >= kCells) {
+      weakest = std::min(weakest, sum / weight);
+      sum = weight = 0.0;
+    }
+  }
+  return s.broken * beside < kLittle * weakest * all;
+}
+
+/// The spectrum of member r, of whose samples `missing` are, if it is one of the noise and not of the gaps.
+void take_spectrum(FullRate& data, std::size_t r, double missing) {
+  constexpr double kFew = 0.005;   // Chosen, not measured: bridges of so few samples hardly show.
+  constexpr double kMost = 0.125;  // Chosen, not measured: whole pieces to fill gaps with become rare beyond it.
+  if (!(missing < kMost)) {
+    return;
+  }
+  set_spectrum(data, r);
+  if (missing >= kFew && !shows_colour(data.spectrum[r], data.slow[r])) {
+    data.spectrum[r] = {};
+    data.slow[r].clear();
+  }
 }
 
 /// Sum over samples in use of the variances of their innovations.
@@ -237,7 +249,9 @@ std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bo
 
 void set_spectrum(FullRate& data, std::size_t r, double f_low_hz) {
   Spectrum& s = data.spectrum[r];
-  s = estimate_spectrum(bridged(data.residual[r], data.used[r]), data.dt_s, f_low_hz);
+  const FilledGaps whole = fill_gaps(data.residual[r], data.used[r]);
+  s = estimate_spectrum(whole.values, data.dt_s, f_low_hz);
+  s.broken = whole.broken;
   std::vector<double>& slow = data.slow[r];
   slow.clear();
   for (std::size_t j = 0; j < s.power.size(); ++j) {
@@ -276,15 +290,11 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   }
   data.spectrum.resize(data.members());
   data.slow.resize(data.members());
-  // Chosen, not measured: gaps fill the deep parts of a spectrum by about their share of its power.
-  constexpr double kMostMissing = 0.005;
   double samples = 0.0;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    const auto present = std::count(data.used[r].begin(), data.used[r].end(), 1);
-    samples += static_cast<double>(present);
-    if (static_cast<double>(present) > (1.0 - kMostMissing) * static_cast<double>(data.used[r].size())) {
-      set_spectrum(data, r);
-    }
+    const auto present = static_cast<double>(std::count(data.used[r].begin(), data.used[r].end(), 1));
+    samples += present;
+    take_spectrum(data, r, 1.0 - present / static_cast<double>(data.used[r].size()));
   }
   data.flat = spectra_fit(data);
   if (!data.flat && !data.given) {

@@ -35,7 +35,7 @@ struct FullRate {
   std::vector<Series> residual;                  ///< per member, over its analysed part
   std::vector<Series> innovation;                ///< likewise; numbers of their own
   std::vector<std::vector<unsigned char>> used;  ///< innovation is meaningful
-  std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
+  std::vector<Spectrum> spectrum;                ///< of the residuals; empty where gaps would show
   std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin
   bool flat = true;  ///< white + slow describes the spectra; false: compare recordings with each other instead
   /// Where no model describes the spectra, gains of contrasts between recordings of n samples are divided by
@@ -66,8 +66,8 @@ struct FullRateOptions {
                                          const std::vector<std::vector<unsigned char>>& mask,
                                          const FullRateOptions& options);
 
-/// Sets `spectrum` and `slow` of member r from its residual. Missing samples stand on a straight line between their
-/// neighbours; power is divided by what `raised` has added to the density. `f_low_hz`: the lowest frequency.
+/// Sets `spectrum` and `slow` of member r from its residual, gaps filled (gaps.hpp); power is divided by what `raised`
+/// has added to the density. `f_low_hz`: the lowest frequency.
 void set_spectrum(FullRate& data, std::size_t r, double f_low_hz = 0.3);
 /// The same for a member that has a spectrum already.
 void renew_spectrum(FullRate& data, std::size_t r);

@@ -18,6 +18,7 @@ struct Spectrum {
   std::vector<double> f_hz;    ///< mean frequency per bin
   std::vector<double> power;   ///< mean P per bin [SI^2 s]
   std::vector<double> weight;  ///< ordinates m per bin
+  double broken = 0.0;         ///< share of the samples that gaps keep from following their neighbours (gaps.hpp)
 };
 
 /// The largest number up to `n` whose only factors are 2, 3 and 5.
