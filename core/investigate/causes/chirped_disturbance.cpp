@@ -260,31 +260,39 @@ Sweep sweep_of(const Evidence& found, double seconds) {
   return {f0, (found.parameters[2].estimate.value - f0) / seconds};
 }
 
+/// Length of the whole recording of which a part is given.
+double whole_length_s(const FullRate& part, std::size_t r) {
+  return static_cast<double>(part.group->members[r].recording->count()) * part.dt_s;
+}
+
 /// A half of the recording holds the first or the second half of the run.
 Evidence find_again(const FullRate& part, const Evidence& found) {
   double seconds = 0.0;
+  double whole = 0.0;
   for (const std::size_t r : found.members) {
     seconds = std::max(seconds, length_s(part, r));
+    whole = std::max(whole, whole_length_s(part, r));
   }
-  const double f0 = found.parameters[1].estimate.value;
-  const double f1 = found.parameters[2].estimate.value;
-  const double middle = 0.5 * (f0 + f1);
-  const Followed first = follow(part, found.members, {f0, (middle - f0) / seconds}, 2.0 / seconds);
-  const Followed second = follow(part, found.members, {middle, (f1 - middle) / seconds}, 2.0 / seconds);
+  const Sweep sweep = sweep_of(found, whole);
+  const Followed first = follow(part, found.members, sweep, 2.0 / seconds);
+  const Followed second = follow(part, found.members, {sweep.at(whole - seconds), sweep.slope_hz_s}, 2.0 / seconds);
   return describe(part, found.members, first.x > second.x ? first : second);
 }
 
-/// `found` is of the other half: the run goes on from its end, or came to its beginning.
+/// `found` is of the other half, which need not be as long: the run goes on from its end, or came to its beginning.
 double log_gain(const FullRate& data, const Evidence& found) {
   const double amplitude = found.parameters[0].estimate.value;
-  const double f0 = found.parameters[1].estimate.value;
-  const double f1 = found.parameters[2].estimate.value;
+  const auto other_half = [&](std::size_t r) { return whole_length_s(data, r) - length_s(data, r); };
+  double seconds = 0.0;
+  for (const std::size_t r : found.members) {
+    seconds = std::max(seconds, other_half(r));
+  }
+  const Sweep sweep = sweep_of(found, seconds);
   double after = 0.0;
   double before = 0.0;
   for (const std::size_t r : found.members) {
-    const double slope = (f1 - f0) / length_s(data, r);
-    const PhaseFit on = fit_phases(data, r, {Sweep{f1, slope}});
-    const PhaseFit back = fit_phases(data, r, {Sweep{f0 - (f1 - f0), slope}});
+    const PhaseFit on = fit_phases(data, r, {Sweep{sweep.at(other_half(r)), sweep.slope_hz_s}});
+    const PhaseFit back = fit_phases(data, r, {Sweep{sweep.at(-length_s(data, r)), sweep.slope_hz_s}});
     after += log_gain_of(on.amplitude[0], on.variance, amplitude);
     before += log_gain_of(back.amplitude[0], back.variance, amplitude);
   }
