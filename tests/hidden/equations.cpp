@@ -163,7 +163,7 @@ Figures flicker_noise(const Injected& in) {  // Allan variance B^2 2 ln 2 / pi; 
 }
 
 Figures quantization_noise(const Injected& in) {  // Allan variance 3 Q^2 / tau^2
-  const std::vector<double> x = minus(in.after.white, in.before.white);
+  const std::vector<double> x = minus(in.after.slow, in.before.slow);
   const auto expected = [&](double tau) { return 3.0 * in.values[0] * in.values[0] / (tau * tau); };
   const double n = static_cast<double>(in.samples());
   return {variance("Allan variance at one sample", allan_variance(x, 1), expected(in.dt_s()), n / 4.0),

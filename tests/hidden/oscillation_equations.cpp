@@ -118,9 +118,9 @@ Figures resonance(const Injected& injected) {
   double samples = 0.0;
   for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
     const investigate::Draft draft = injected.again(seed);
-    std::vector<double> x(draft.white.size());
+    std::vector<double> x(draft.slow.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = draft.white[i] - injected.before.white[i];
+      x[i] = draft.slow[i] - injected.before.slow[i];
       square += x[i] * x[i];
       samples += 1.0;
       for (std::size_t k = 0; k < lags.size(); ++k) {

@@ -3,8 +3,9 @@
 /// use it.
 ///
 /// It describes one channel. The white part, the slow part and the mean are kept apart until finish(), because effects
-/// act on one of them. A cause with a template or a slow process needs no code of its own here; the others have
-/// `Cause::inject`.
+/// act on one of them: a level of white noise, or its tails, stand in the place of the white part, so that every noise
+/// of another colour, differenced or resonant, is in the slow one. A cause with a template or a slow process needs no
+/// code of its own here; the others have `Cause::inject`.
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/random.hpp"
 

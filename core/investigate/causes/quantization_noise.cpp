@@ -50,7 +50,7 @@ double log_gain(const FullRate& data, const Evidence& found) {
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
   double last = values[0] * std::sqrt(12.0) * (random.uniform() - 0.5);
-  for (double& v : draft.white) {
+  for (double& v : draft.slow) {
     const double next = values[0] * std::sqrt(12.0) * (random.uniform() - 0.5);
     v += (next - last) / draft.recording->dt_s;
     last = next;

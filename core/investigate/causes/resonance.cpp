@@ -119,7 +119,7 @@ double density(const Evidence& found, double f_hz, double dt_s) {
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
-  Resonance{values[0], values[1], values[2]}.add_path(random, draft.recording->dt_s, draft.white);
+  Resonance{values[0], values[1], values[2]}.add_path(random, draft.recording->dt_s, draft.slow);
 }
 
 /// Quality 3 to 12 at a tenth to a third of the rate: the gain is that of z deviations in the bins of its width.
