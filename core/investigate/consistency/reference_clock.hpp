@@ -28,8 +28,9 @@ struct ClockFault {
   std::vector<std::size_t> channels;  ///< of the recording, that were used
 };
 
-/// The statistic from which a break of the clock is named: far above what a recording without one reaches.
-inline constexpr double kClockBreaks = 60.0;
+/// The statistic from which a break of the clock is named. None of 200 simulated studies of three recordings reaches it
+/// whose clock does not break (tests/hidden/clock_break_test.cpp).
+inline constexpr double kClockBreaks = 36.0;
 
 /// The statistic from which a break is not ruled out where something else of the clock is found. Of 200 simulated
 /// studies of three recordings with a clock that drifts all the time 2 % reach it (tests/hidden/clock_break_test.cpp).
