@@ -249,7 +249,9 @@ std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bo
 
 void set_spectrum(FullRate& data, std::size_t r, double f_low_hz) {
   Spectrum& s = data.spectrum[r];
-  const FilledGaps whole = fill_gaps(data.residual[r], data.used[r]);
+  constexpr double kBeside = 2.0;  // [s] Chosen: what it raises lies below the frequencies that are looked at.
+  const auto beside = static_cast<std::size_t>(std::max(1.0, kBeside / data.dt_s));
+  const FilledGaps whole = fill_gaps(data.residual[r], data.used[r], beside);
   s = estimate_spectrum(whole.values, data.dt_s, f_low_hz);
   s.broken = whole.broken;
   std::vector<double>& slow = data.slow[r];

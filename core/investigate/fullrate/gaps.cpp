@@ -12,8 +12,6 @@ namespace {
 
 // Chosen, not measured: a line in the place of fewer changes no level by more than its standard error.
 constexpr double kMostOnLines = 0.005;
-/// Samples on either side that tell the level there, and the share of their mean in a fill. Chosen, not measured.
-constexpr std::size_t kBeside = 16;
 /// Places that are tried before a gap that is too long for this recording gets its line. Chosen, not measured.
 constexpr int kTries = 20;
 
@@ -50,44 +48,45 @@ void put_on_line(std::vector<double>& values, const Gap& gap) {
 /// Sums over the samples that are there, from the first on.
 class Present {
  public:
-  Present(const std::vector<double>& values, const std::vector<unsigned char>& used)
-      : sum_(values.size() + 1, 0.0), count_(values.size() + 1, 0) {
+  Present(const std::vector<double>& values, const std::vector<unsigned char>& used, std::size_t beside)
+      : beside_(beside), sum_(values.size() + 1, 0.0), count_(values.size() + 1, 0) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       sum_[i + 1] = sum_[i] + (used[i] != 0 ? values[i] : 0.0);
       count_[i + 1] = count_[i] + (used[i] != 0 ? 1U : 0U);
     }
   }
-  /// Mean of the samples at most kBeside before `begin` and behind `end`; nothing where there is none.
+  /// Mean of the samples at most `beside` before `begin` and behind `end`; nothing where there is none.
   [[nodiscard]] std::optional<double> mean_beside(const Gap& gap) const {
-    const std::size_t from = gap.begin - std::min(gap.begin, kBeside);
-    const std::size_t to = std::min(gap.end + kBeside, sum_.size() - 1);
+    const std::size_t from = gap.begin - std::min(gap.begin, beside_);
+    const std::size_t to = std::min(gap.end + beside_, sum_.size() - 1);
     const double sum = sum_[gap.begin] - sum_[from] + sum_[to] - sum_[gap.end];
     const std::uint32_t count = count_[gap.begin] - count_[from] + count_[to] - count_[gap.end];
     return count > 0 ? std::optional(sum / count) : std::nullopt;
   }
-  /// Whether nothing is missing in the piece and beside it.
-  [[nodiscard]] bool whole(const Gap& piece) const {
-    const std::size_t from = piece.begin - kBeside;
-    const std::size_t to = piece.end + kBeside;
-    return count_[to] - count_[from] == to - from;
-  }
+  [[nodiscard]] bool whole(const Gap& piece) const { return count_[piece.end] - count_[piece.begin] == piece.length(); }
 
  private:
+  std::size_t beside_;
   std::vector<double> sum_;
   std::vector<std::uint32_t> count_;
 };
 
-/// A whole piece as long as the gap, with whole neighbourhoods.
-std::optional<Gap> piece_for(const Gap& gap, std::size_t samples, const Present& present, Random& random) {
-  const std::size_t room = gap.length() + 2 * kBeside;
-  if (samples < 2 * room) {
+/// A whole piece as long as the gap, and the mean beside it.
+struct Piece {
+  Gap place;
+  double level = 0.0;
+};
+
+std::optional<Piece> piece_for(const Gap& gap, std::size_t samples, const Present& present, Random& random) {
+  if (samples < 2 * gap.length()) {
     return std::nullopt;
   }
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const std::size_t begin = kBeside + random.below(samples - room);
-    const Gap piece{begin, begin + gap.length()};
-    if (present.whole(piece)) {
-      return piece;
+    const std::size_t begin = random.below(samples - gap.length());
+    const Gap place{begin, begin + gap.length()};
+    if (present.whole(place)) {
+      const std::optional<double> level = present.mean_beside(place);
+      return level ? std::optional(Piece{place, *level}) : std::nullopt;
     }
   }
   return std::nullopt;
@@ -95,7 +94,7 @@ std::optional<Gap> piece_for(const Gap& gap, std::size_t samples, const Present&
 
 }  // namespace
 
-FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& used) {
+FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& used, std::size_t beside) {
   const std::vector<Gap> gaps = gaps_of(used);
   if (gaps.empty()) {
     return {values, 0.0};
@@ -113,23 +112,22 @@ FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& use
     return {std::move(filled), missing / samples};
   }
   const std::vector<double> before = filled;
-  const Present present(before, used);
+  const Present present(before, used, beside);
   Random random(filled.size(), gaps.size());
-  // Of white noise, the mean beside the gap and that beside the piece each add 1/(2 kBeside) of the variance.
-  constexpr double kOfMean = 0.5 / static_cast<double>(kBeside);
-  const double scale = std::sqrt((1.0 - kOfMean) / (1.0 + kOfMean));
+  // Of white noise, the mean beside the gap and that beside the piece each add this share of the variance.
+  const double of_mean = 0.5 / static_cast<double>(beside);
+  const double scale = std::sqrt((1.0 - of_mean) / (1.0 + of_mean));
   double broken = 0.0;
   for (const Gap& gap : gaps) {
     const std::optional<double> here = present.mean_beside(gap);
-    const std::optional<Gap> piece = here ? piece_for(gap, filled.size(), present, random) : std::nullopt;
+    const std::optional<Piece> piece = here ? piece_for(gap, filled.size(), present, random) : std::nullopt;
     if (!piece) {
       put_on_line(filled, gap);
       broken += static_cast<double>(gap.length());
       continue;
     }
-    const double there = *present.mean_beside(*piece);
     for (std::size_t k = 0; k < gap.length(); ++k) {
-      filled[gap.begin + k] = *here + scale * (before[piece->begin + k] - there);
+      filled[gap.begin + k] = *here + scale * (before[piece->place.begin + k] - piece->level);
     }
     broken += 2.0;
   }

@@ -66,8 +66,39 @@ TEST(FullRate, InnovationsAreThoseOfBlocksOfOneSample) {
   EXPECT_TRUE(spectra.innovation.empty());
   ASSERT_EQ(spectra.spectrum.size(), data.spectrum.size());
   EXPECT_FALSE(data.spectrum[0].power.empty());
-  EXPECT_TRUE(data.spectrum[1].power.empty()) << "more than 0.5 % of it is missing";
+  EXPECT_FALSE(data.spectrum[1].power.empty()) << "two of ninety samples are missing";
+  EXPECT_EQ(data.spectrum[0].broken, 0.0);
+  EXPECT_GT(data.spectrum[1].broken, 0.0);
   EXPECT_EQ(spectra.spectrum[0].power, data.spectrum[0].power);
+}
+
+/// The spectrum of a recording of which every `every`-th sample is missing.
+Spectrum seen_with_gaps(std::vector<double> values, std::size_t every) {
+  NoiseAtFullRate noise({std::move(values)});
+  std::vector<unsigned char> there(noise.recordings[0].length, 1);
+  for (std::size_t i = every; i < there.size(); i += every) {
+    there[i] = 0;
+  }
+  noise.channels[0].valid = Presence(there);
+  noise.channels[0].error = noise.data.residual[0];
+  SlowModel model;
+  model.white = 0.02;
+  FullRateOptions options;
+  options.innovations = false;
+  const Study study;
+  return look_at_full_rate(study, noise.group, model, {noise.channels[0].error}, {}, options).spectrum[0];
+}
+
+TEST(FullRate, ASpectrumThatGapsWouldFillIsNotTaken) {
+  const std::vector<double> level = white(4000, 1);
+  std::vector<double> differenced(level.size());
+  for (std::size_t i = 1; i < level.size(); ++i) {
+    differenced[i] = level[i] - level[i - 1];
+  }
+  EXPECT_FALSE(seen_with_gaps(level, 50).power.empty());
+  EXPECT_TRUE(seen_with_gaps(level, 7).power.empty()) << "too much is missing";
+  EXPECT_FALSE(seen_with_gaps(differenced, 500).power.empty());
+  EXPECT_TRUE(seen_with_gaps(differenced, 50).power.empty()) << "it has no power at low frequencies";
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kSamples = 120000;
 constexpr double kDt = 0.01;
+constexpr std::size_t kBeside = 200;
 
 /// Gaps that begin at random and have a geometric length of mean six.
 std::vector<unsigned char> some_used(double share, Random& random) {
@@ -47,7 +48,7 @@ double ratio_between(const Spectrum& s, double low_hz, double high_hz, Expected 
 
 TEST(Gaps, NothingMissingLeavesTheValues) {
   const Series values(std::vector<double>{1.0, 2.0, 3.0});
-  const FilledGaps filled = fill_gaps(values, {1, 1, 1});
+  const FilledGaps filled = fill_gaps(values, {1, 1, 1}, kBeside);
   EXPECT_EQ(filled.values.values(), values.values());
   EXPECT_EQ(filled.broken, 0.0);
 }
@@ -59,14 +60,14 @@ TEST(Gaps, FewSamplesStandOnALine) {
   values[502] = 4.0;
   std::vector<unsigned char> used(1000, 1);
   used[500] = used[501] = 0;
-  const FilledGaps filled = fill_gaps(values, used);
+  const FilledGaps filled = fill_gaps(values, used, kBeside);
   EXPECT_DOUBLE_EQ(filled.values[500], 2.0);
   EXPECT_DOUBLE_EQ(filled.values[501], 3.0);
   EXPECT_DOUBLE_EQ(filled.broken, 0.002);
 }
 
 TEST(Gaps, NothingButGapsIsFilledSomehow) {
-  const FilledGaps filled = fill_gaps(std::vector<double>{1.0, 2.0, 3.0}, {0, 0, 0});
+  const FilledGaps filled = fill_gaps(std::vector<double>{1.0, 2.0, 3.0}, {0, 0, 0}, kBeside);
   EXPECT_EQ(filled.values.size(), 3U);
   EXPECT_EQ(filled.broken, 1.0);
 }
@@ -81,7 +82,7 @@ TEST(Gaps, WhiteNoiseKeepsItsLevelAtEveryFrequency) {
   for (std::size_t i = 0; i < kSamples; ++i) {
     values[i] = used[i] != 0 ? values[i] : 1e6;  // whatever stands in a gap is not looked at
   }
-  const FilledGaps filled = fill_gaps(values, used);
+  const FilledGaps filled = fill_gaps(values, used, kBeside);
   const Spectrum s = estimate_spectrum(filled.values, kDt, 0.3);
   const auto white = [](double) { return kDt; };
   EXPECT_NEAR(ratio_between(s, 0.3, 2.0, white), 1.0, 0.05);  // 2,040 ordinates: 0.022
@@ -103,7 +104,7 @@ TEST(Gaps, ColouredNoiseKeepsItsColourButForTheJoints) {
     last = next;
   }
   const std::vector<unsigned char> used = some_used(0.05, random);
-  const FilledGaps filled = fill_gaps(values, used);
+  const FilledGaps filled = fill_gaps(values, used, kBeside);
   const Spectrum s = estimate_spectrum(filled.values, kDt, 0.3);
   const auto expected = [&](double f) {
     const double half = std::sin(std::numbers::pi * f * kDt);
