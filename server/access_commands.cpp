@@ -22,6 +22,9 @@ int complain(const Error& error) {
 std::string moment(const std::optional<UtcMicros>& time) { return time ? rfc3339(*time) : "-"; }
 
 std::string state_of(const Token& token, UtcMicros now) {
+  if (token.is_damaged) {
+    return "damaged";
+  }
   if (token.revoked_at) {
     return "revoked";
   }

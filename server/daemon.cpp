@@ -109,6 +109,7 @@ struct Daemon::Parts {
         backups(clock, backup_options(settings)),
         dispatcher(api) {
     store->tell_damage_to([this](const Error& error) { scrubber.note_damaged_row(damaged_row_of(error)); });
+    (void)gate->load();  // once more, for nobody was told yet of a token whose row is damaged
     if (store_in.lost_commits > 0) {
       states.begin(BadState::WritesLost, "damage",
                    "The database lacks " + std::to_string(store_in.lost_commits) +

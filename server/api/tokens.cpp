@@ -2,6 +2,7 @@
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/auth/secret.hpp"
+#include "server/store/damaged_row.hpp"
 
 #include <algorithm>
 
@@ -86,8 +87,20 @@ Result<Response> create_token(ApiContext& context, const Request& request) {
   return issued_response(201, *issued);
 }
 
-Result<Token> token_named(ApiContext& context, const std::string& id) {
+/// Every token; of one whose row is damaged nothing is said.
+Result<std::vector<Token>> sound_tokens(ApiContext& context) {
   auto all = context.gate.tokens();
+  if (all) {
+    const auto damaged = std::find_if(all->begin(), all->end(), [](const Token& each) { return each.is_damaged; });
+    if (damaged != all->end()) {
+      return fail(damaged_row("tokens", "token", damaged->id));
+    }
+  }
+  return all;
+}
+
+Result<Token> token_named(ApiContext& context, const std::string& id) {
+  auto all = sound_tokens(context);
   if (!all) {
     return fail(all.error());
   }
@@ -105,7 +118,7 @@ Result<Response> list_tokens(ApiContext& context, const Request& request) {
   if (!page) {
     return fail(page.error());
   }
-  auto all = context.gate.tokens();
+  auto all = sound_tokens(context);
   if (!all) {
     return fail(all.error());
   }

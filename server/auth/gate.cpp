@@ -16,7 +16,7 @@ constexpr std::size_t kMostDevices = 100;
 constexpr std::size_t kMostTokens = 1000;
 
 bool is_live(const Token& token, UtcMicros now) {
-  return !token.revoked_at && (!token.expires_at || *token.expires_at > now);
+  return !token.is_damaged && !token.revoked_at && (!token.expires_at || *token.expires_at > now);
 }
 
 Principal principal_of(const Token& token) { return {token.id, token.name, token.scope, token.devices, false}; }
@@ -136,6 +136,10 @@ tl::expected<Principal, std::string> Gate::identify(const Credentials& credentia
   }
   if (token == nullptr || token->revoked_at) {
     return tl::unexpected(std::string("The token is not known here, or was revoked."));
+  }
+  if (token->is_damaged) {
+    return tl::unexpected("The row of the token " + token->id +
+                          " is damaged; an admin revokes it and makes another one.");
   }
   if (!is_live(*token, clock_.now())) {
     return tl::unexpected(std::string("The token has expired."));

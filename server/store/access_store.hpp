@@ -27,6 +27,7 @@ struct Token {
   std::optional<UtcMicros> revoked_at;
   std::optional<UtcMicros> rotated_at;
   std::optional<UtcMicros> last_used_at;  ///< to the minute
+  bool is_damaged = false;                ///< its row is not what was written: it lets nobody in
 };
 
 struct Session {
@@ -46,9 +47,11 @@ class AccessStore {
   /// Every token that ever was, oldest first: a revoked one stays as a row.
   [[nodiscard]] virtual Result<std::vector<Token>> tokens() = 0;
   [[nodiscard]] virtual Result<Token> add_token(const Token& token) = 0;
-  /// Ends the token and its sessions. NotFound. A token that is revoked already stays as it is.
+  /// Ends the token and its sessions, also where its row is damaged. NotFound. A token that is revoked already stays as
+  /// it is.
   [[nodiscard]] virtual Result<Token> revoke_token(std::string_view id) = 0;
-  /// Another secret for the same token; its sessions end. NotFound; Conflict where it is revoked.
+  /// Another secret for the same token; its sessions end. NotFound; Conflict where it is revoked;
+  /// damaged_row (damaged_row.hpp) where it is damaged.
   [[nodiscard]] virtual Result<Token> rotate_token(std::string_view id, std::string_view secret_sha256) = 0;
   /// When tokens were last used. No row of the audit log.
   [[nodiscard]] virtual Status note_use(const std::vector<std::pair<std::string, UtcMicros>>& uses) = 0;

@@ -8,6 +8,7 @@ import stat
 import subprocess
 import tempfile
 import unittest
+from contextlib import closing
 from pathlib import Path
 
 import samples
@@ -45,6 +46,28 @@ class Commands(unittest.TestCase):
         self.assertEqual(ran.returncode, 0, ran.stderr)
         self.assertRegex(ran.stdout, r"^dl_[0-9A-Za-z]{30}_[0-9A-Za-z]{6}\n$")
         return ran.stdout.strip()
+
+    def test_a_token_whose_row_is_damaged_lets_nobody_in(self) -> None:
+        """One bit made a reader of an admin, or an admin of a reader: neither is one any more."""
+        admin = self.made("--name", "head", "--scope", "admin")
+        reader = self.made("--name", "line", "--scope", "read")
+        with closing(sqlite3.connect(self.data / "driftlab.db")) as database, database:
+            [identifier] = database.execute("SELECT id FROM tokens WHERE name = 'line'").fetchone()
+            database.execute("UPDATE tokens SET scope = 'admin' WHERE id = ?", (identifier,))
+        listed = command("token", "list", data=self.data)
+        self.assertRegex(listed.stdout, rf"(?m)^{identifier} .* damaged ")
+        with Daemon(self.data, arguments=("--budget", "scrub_bytes_per_second=0")) as daemon:
+            refused = daemon.get("/v1/devices", Authorization=f"Bearer {reader}")
+            self.assertEqual((refused.status, refused.json["code"]), (401, "unauthorized"))
+            self.assertIn(f"The row of the token {identifier} is damaged", refused.json["detail"])
+            self.assertEqual(daemon.get("/v1/devices", Authorization=f"Bearer {admin}").status, 200)
+            states = daemon.get("/readyz", Authorization=f"Bearer {admin}").json["states"]
+            self.assertEqual([(state["state"], state["row"]) for state in states], [("row_damaged", f"tokens/{identifier}")])
+            unsaid = daemon.get("/v1/tokens", Authorization=f"Bearer {admin}")
+            self.assertEqual((unsaid.status, unsaid.json["where"]), (500, {"damaged_row": f"tokens/{identifier}"}))
+            revoked = daemon.post(f"/v1/tokens/{identifier}/revoke", headers={"Authorization": f"Bearer {admin}"})
+            self.assertEqual(revoked.status, 200, revoked.describe())
+            self.assertEqual(daemon.get("/v1/tokens", Authorization=f"Bearer {admin}").status, 200)
 
     def test_required_tokens_begin_with_one_in_a_file_of_the_owner(self) -> None:
         with Daemon(self.data, arguments=("--require-tokens",)) as daemon:

@@ -53,6 +53,13 @@ class Database {
   /// before the first transaction of others.
   void tell_damage_to(DamageListener listener) { damage_listener_ = std::move(listener); }
 
+  /// Tells the listener of a damaged row that is no failure to whoever read it.
+  void tell_damage(const Error& error) const {
+    if (damage_listener_) {
+      damage_listener_(error);
+    }
+  }
+
   /// Store::changes.
   [[nodiscard]] virtual std::uint64_t changes() const = 0;
   [[nodiscard]] WriteTimes::Counts write_times() const { return write_times_.counts(); }
@@ -69,8 +76,8 @@ class Database {
 
   template <class Outcome>
   [[nodiscard]] Outcome noted(Outcome outcome) const {
-    if (!outcome && damage_listener_ && !damaged_row_of(outcome.error()).empty()) {
-      damage_listener_(outcome.error());
+    if (!outcome && !damaged_row_of(outcome.error()).empty()) {
+      tell_damage(outcome.error());
     }
     return outcome;
   }

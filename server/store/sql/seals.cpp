@@ -89,6 +89,7 @@ const std::vector<SealedTable>& sealed_tables() {
       {"anchors", "anchor", {"id"}, "id, device_id, label, reason, settings_json"},
       {"artefacts", "file of a result", {"job_id", "name"}, "job_id, name, content"},
       {"idempotent_replies", "reply", {"key"}, "key, method, target, body_sha256, status, headers_json, body"},
+      {"tokens", "token", {"id"}, "id, name, scope, devices_json, secret_sha256, created_at, expires_at, revoked_at"},
   };
   return tables;
 }

@@ -3,9 +3,9 @@
 ///
 /// A row of a sealed table has the SHA-256 of its sealed columns in its column `seal`, written by the statement that
 /// writes them and compared whenever the row is read, in the background (server/scrubber.hpp) and by `driftlabd check`.
-/// Sealed is what results are made of and answers say. Times, states and counters are not: they change by statements
-/// of their own, and no result depends on them. An empty seal is that of a row of an earlier release; a daemon fills it
-/// in when it starts.
+/// Sealed is what results are made of and answers say, and what lets somebody in. Times, states and counters are not:
+/// they change by statements of their own, and no result depends on them. An empty seal is that of a row of an earlier
+/// release; a daemon fills it in when it starts.
 #include "core/signal/result.hpp"
 #include "server/store/damaged_row.hpp"
 #include "server/store/rows.hpp"
@@ -46,7 +46,7 @@ struct SealedTable {
 [[nodiscard]] std::string seal_of(const ResultVerdict& verdict);
 [[nodiscard]] std::string seal_of(const Anchor& anchor);
 [[nodiscard]] std::string seal_of(const IdempotentReply& reply);
-/// Of a table whose rows are texts alone: job_results, artefacts.
+/// Of the sealed columns as texts, which is how job_results, artefacts and tokens are sealed.
 [[nodiscard]] std::string seal_of_texts(const std::vector<std::string_view>& texts);
 
 /// Whether a seal fits. One that was never made fits everything.

@@ -14,7 +14,13 @@ std::string detail_of(const Token& token) {
 }  // namespace
 
 Result<std::vector<Token>> SqlAccess::tokens() {
-  return database_.read([](Connection& c) { return tables::tokens(c); });
+  auto all = database_.read([](Connection& c) { return tables::tokens(c); });
+  for (const Token& token : all ? *all : std::vector<Token>{}) {
+    if (token.is_damaged) {
+      database_.tell_damage(damaged_row("tokens", "token", token.id));
+    }
+  }
+  return all;
 }
 
 Result<Token> SqlAccess::add_token(const Token& token) {

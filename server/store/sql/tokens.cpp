@@ -1,19 +1,24 @@
+#include "server/store/damaged_row.hpp"
 #include "server/store/sql/access_tables.hpp"
+#include "server/store/sql/seals.hpp"
 
 #include <nlohmann/json.hpp>
 
 namespace driftlab::server::tables {
 namespace {
 
+/// The sealed columns first (seals.cpp).
 #define DRIFTLAB_TOKEN_COLUMNS \
   "id, name, scope, devices_json, secret_sha256, created_at, expires_at, revoked_at, rotated_at, last_used_at"
+constexpr int kSealed = 8;
 
-constexpr std::string_view kAll = "SELECT " DRIFTLAB_TOKEN_COLUMNS " FROM tokens ORDER BY created_at, id";
-constexpr std::string_view kById = "SELECT " DRIFTLAB_TOKEN_COLUMNS " FROM tokens WHERE id = ?";
+constexpr std::string_view kAll = "SELECT " DRIFTLAB_TOKEN_COLUMNS ", seal FROM tokens ORDER BY created_at, id";
+constexpr std::string_view kById = "SELECT " DRIFTLAB_TOKEN_COLUMNS ", seal FROM tokens WHERE id = ?";
 constexpr std::string_view kInsert =
     "INSERT INTO tokens (" DRIFTLAB_TOKEN_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, NULL, NULL, NULL)";
-constexpr std::string_view kRevoke = "UPDATE tokens SET revoked_at = ?2 WHERE id = ?1 AND revoked_at IS NULL";
-constexpr std::string_view kRotate = "UPDATE tokens SET secret_sha256 = ?2, rotated_at = ?3 WHERE id = ?1";
+constexpr std::string_view kRevoke =
+    "UPDATE tokens SET revoked_at = ?2, seal = '' WHERE id = ?1 AND revoked_at IS NULL";
+constexpr std::string_view kRotate = "UPDATE tokens SET secret_sha256 = ?2, rotated_at = ?3, seal = '' WHERE id = ?1";
 constexpr std::string_view kUse =
     "UPDATE tokens SET last_used_at = CASE WHEN coalesce(last_used_at, 0) < ?2 THEN ?2 ELSE last_used_at END WHERE id "
     "= ?1";
@@ -49,6 +54,11 @@ Token read_token(const Statement& row) {
   token.revoked_at = row.optional_integer(7);
   token.rotated_at = row.optional_integer(8);
   token.last_used_at = row.optional_integer(9);
+  std::vector<std::string> sealed;
+  for (int column = 0; column < kSealed; ++column) {
+    sealed.push_back(row.text(column));
+  }
+  token.is_damaged = !seal_fits(row.text(10), seal_of_texts({sealed.begin(), sealed.end()}));
   return token;
 }
 
@@ -63,6 +73,16 @@ Result<Token> token_of(Connection& connection, std::string_view id) {
                  {ErrorCode::NotFound, "There is no token \"" + std::string(id) + "\".", {{"token", std::string(id)}}});
 }
 
+/// Runs a change that leaves its rows without a seal, and seals them.
+Status run_and_seal(Connection& connection, Statement& change) {
+  constexpr int kMost = 1000;  // tokens that there can be
+  if (Status changed = change.run(); !changed) {
+    return changed;
+  }
+  const Result<int> sealed = seal_rows(connection, sealed_table("tokens"), kMost);
+  return sealed ? Status{} : fail(sealed.error());
+}
+
 }  // namespace
 
 Result<std::vector<Token>> tokens(Connection& connection) {
@@ -73,21 +93,26 @@ Result<std::vector<Token>> tokens(Connection& connection) {
 Result<Token> add_token(Connection& connection, const Token& token, UtcMicros now) {
   Token made = token;
   made.created_at = now;
-  Status inserted = connection.prepare(kInsert)
-                        .bind(made.id, made.name, name_of(made.scope), written(made.devices), made.secret_sha256,
-                              made.created_at, made.expires_at)
-                        .run();
-  if (!inserted) {
+  Statement insert = connection.prepare(kInsert);
+  insert.bind(made.id, made.name, name_of(made.scope), written(made.devices), made.secret_sha256, made.created_at,
+              made.expires_at);
+  if (Status inserted = run_and_seal(connection, insert); !inserted) {
     return fail(inserted.error());
   }
   return made;
 }
 
 Result<RevokedToken> revoke_token(Connection& connection, std::string_view id, UtcMicros now) {
-  if (Status revoked = connection.prepare(kRevoke).bind(id, now).run(); !revoked) {
+  const Result<Token> found = token_of(connection, id);
+  if (!found) {
+    return fail(found.error());
+  }
+  const bool changed = !found->revoked_at;
+  Statement revoke = connection.prepare(kRevoke);
+  revoke.bind(id, now);
+  if (Status revoked = run_and_seal(connection, revoke); !revoked) {
     return fail(revoked.error());
   }
-  const bool changed = connection.changes() > 0;
   if (Status ended = connection.prepare(kEndAll).bind(id).run(); !ended) {
     return fail(ended.error());
   }
@@ -103,7 +128,12 @@ Result<Token> rotate_token(Connection& connection, std::string_view id, std::str
     return fail(ErrorCode::Conflict, "The token " + found->id + " is revoked; make another one.",
                 {{"token", found->id}});
   }
-  if (Status rotated = connection.prepare(kRotate).bind(id, secret_sha256, now).run(); !rotated) {
+  if (found->is_damaged) {
+    return fail(damaged_row("tokens", "token", id));
+  }
+  Statement rotate = connection.prepare(kRotate);
+  rotate.bind(id, secret_sha256, now);
+  if (Status rotated = run_and_seal(connection, rotate); !rotated) {
     return fail(rotated.error());
   }
   if (Status ended = connection.prepare(kEndAll).bind(id).run(); !ended) {

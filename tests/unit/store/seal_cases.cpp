@@ -97,6 +97,14 @@ Readers SealedRows::fill() {
   EXPECT_TRUE(store().add_anchor({"", device.id, "firmware=1", "why", 0, R"({"alpha":0.05})"}));
   IdempotentReply reply{"reply", "POST", "/v1/jobs", "aa", 201, R"({"a":"b"})", R"({"id":"x"})", 0};
   EXPECT_TRUE(store().remember_reply(reply));
+  Token token;
+  token.id = "aaaaaaaa";
+  token.name = "a token";
+  token.scope = Scope::Run;
+  token.devices = {{"imu-1"}};
+  token.secret_sha256 = std::string(64, 'a');
+  token.expires_at = 1'000'000;
+  EXPECT_TRUE(rows().access().add_token(token));
   const std::string fit = results.fits.front().id;
   return {
       {"devices", [=, this] { return error_of(store().device(device.id)); }},
@@ -116,6 +124,12 @@ Readers SealedRows::fill() {
       {"anchors", [=, this] { return error_of(store().anchors(std::nullopt, {})); }},
       {"artefacts", [=, this] { return error_of(store().artefact(job.id, "report.md")); }},
       {"idempotent_replies", [=, this] { return error_of(store().idempotent_reply("reply")); }},
+      {"tokens",
+       [this]() -> std::optional<Error> {
+         const auto all = rows().access().tokens();
+         const bool is_damaged = all && all->front().is_damaged;
+         return is_damaged ? std::optional(damaged_row("tokens", "token", all->front().id)) : error_of(all);
+       }},
   };
 }
 
@@ -216,6 +230,25 @@ TEST_P(SealedRows, ChangesOfARowKeepItsSealTrue) {
   EXPECT_TRUE(store().device(device.id));
   EXPECT_TRUE(store().recording(recording.id));
   EXPECT_FALSE(store().job(job.id)->is_damaged);
+}
+
+TEST_P(SealedRows, ADamagedTokenIsRevokedAndNotRotated) {
+  AccessStore& access = rows().access();
+  Token token;
+  token.id = "aaaaaaaa";
+  token.name = "a token";
+  token.secret_sha256 = std::string(64, 'a');
+  ASSERT_TRUE(access.add_token(token));
+  ASSERT_TRUE(access.rotate_token("aaaaaaaa", std::string(64, 'b')));
+  ASSERT_TRUE(access.note_use({{"aaaaaaaa", 5}}));
+  EXPECT_THAT(damaged(), IsEmpty());
+  ASSERT_TRUE(write(sealed_table("tokens"), "scope", "admin"));
+  EXPECT_TRUE(access.tokens()->front().is_damaged);
+  EXPECT_EQ(damaged_row_of(access.rotate_token("aaaaaaaa", std::string(64, 'c')).error()), "tokens/aaaaaaaa");
+  ASSERT_TRUE(access.revoke_token("aaaaaaaa"));
+  EXPECT_FALSE(access.tokens()->front().is_damaged);
+  EXPECT_TRUE(access.tokens()->front().revoked_at);
+  EXPECT_THAT(damaged(), IsEmpty());
 }
 
 TEST_P(SealedRows, AJobWithADamagedRequestIsClaimedOnceAndSaysSo) {
