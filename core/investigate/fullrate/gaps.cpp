@@ -111,8 +111,7 @@ FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& use
     }
     return {std::move(filled), missing / samples};
   }
-  const std::vector<double> before = filled;
-  const Present present(before, used, beside);
+  const Present present(filled, used, beside);
   Random random(filled.size(), gaps.size());
   // Of white noise, the mean beside the gap and that beside the piece each add this share of the variance.
   const double of_mean = 0.5 / static_cast<double>(beside);
@@ -127,7 +126,7 @@ FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& use
       continue;
     }
     for (std::size_t k = 0; k < gap.length(); ++k) {
-      filled[gap.begin + k] = *here + scale * (before[piece->place.begin + k] - piece->level);
+      filled[gap.begin + k] = *here + scale * (values[piece->place.begin + k] - piece->level);
     }
     broken += 2.0;
   }

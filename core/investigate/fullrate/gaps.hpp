@@ -19,7 +19,7 @@ struct FilledGaps {
 };
 
 /// `used[i]`: sample i is there; `beside`: samples, at least one, to each side of a gap that tell the level there.
-/// Deterministic. O(n).
+/// Deterministic. O(n); 20 bytes a sample while it runs, where more than 0.5 % are missing.
 [[nodiscard]] FilledGaps fill_gaps(const Series& values, const std::vector<unsigned char>& used, std::size_t beside);
 
 }  // namespace driftlab::investigate
