@@ -225,6 +225,19 @@ void without_whole_clock(std::vector<BlockMeans>& all) {
   }
 }
 
+/// n ln(RSS/RSS'), of the common columns of one and of the other, without a break.
+double log_ratio(const std::vector<BlockMeans>& one, const std::vector<BlockMeans>& other) {
+  const auto left = [](const BlockMeans& blocks) {
+    const Eigen::MatrixXd& x = blocks.common;
+    return (blocks.error - x * x.completeOrthogonalDecomposition().solve(blocks.error)).squaredNorm();
+  };
+  double sum = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    sum += one[i].used.sum() * std::log(left(one[i]) / std::max(1e-300, left(other[i])));
+  }
+  return sum;
+}
+
 struct Best {
   double statistic = -1.0;
   std::size_t at = 0;
@@ -273,15 +286,14 @@ std::vector<double> grid_of(const StudyRecording& recording, double step_s, doub
   return times;
 }
 
-Interval times_within(const Best& best, const std::vector<double>& times, double step_s) {
-  Interval interval{times[best.at], times[best.at]};
+/// Widens an interval by the times whose statistic is within 3.84 of the top.
+void widen(Interval& interval, const Best& best, double top, const std::vector<double>& times, double step_s) {
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (best.statistics[k] > best.statistic - 3.84) {
-      interval.low = std::min(interval.low, times[k]);
-      interval.high = std::max(interval.high, times[k]);
+    if (best.statistics[k] > top - 3.84) {
+      interval.low = std::min(interval.low, times[k] - step_s);
+      interval.high = std::max(interval.high, times[k] + step_s);
     }
   }
-  return {interval.low - step_s, interval.high + step_s};
 }
 
 }  // namespace
@@ -314,10 +326,21 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
     filters.push_back(autoregression(left));
     white.push_back(whitened(blocks, filters.back()));
   }
-  const std::array<Best, 2> best{best_of(white, kKinds[0], times), best_of(white, kKinds[1], times)};
-  const std::size_t k = best[0].statistic > best[1].statistic ? 0 : 1;
-  if (best.at(k).statistic < least) {
-    return std::nullopt;
+  const auto kind_of = [](const std::array<Best, 2>& best) -> std::size_t {
+    return best[0].statistic > best[1].statistic ? 0 : 1;
+  };
+  std::array<Best, 2> best{best_of(white, kKinds[0], times), best_of(white, kKinds[1], times)};
+  std::size_t k = kind_of(best);
+  const double beside = best.at(k).statistic;
+  if (beside < least) {
+    std::vector<BlockMeans> alone = white;
+    without_whole_clock(alone);
+    best = {best_of(alone, kKinds[0], times), best_of(alone, kKinds[1], times)};
+    k = kind_of(best);
+    const double instead = best.at(k).statistic;
+    if (instead < kClockBreaks || instead - log_ratio(alone, white) < kBreakSurpasses) {
+      return std::nullopt;
+    }
   }
   const double step = white.front().block_s;
   const double near = times[best.at(k).at];
@@ -329,10 +352,12 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
     without_whole_clock(white);
   }
   const Best found = best_of(white, kKinds.at(k), fine);
+  const Best anywhere = best_of(white, kKinds.at(k), times);  // a small break may as well be far from there
+  const double top = std::max(found.statistic, anywhere.statistic);
   ClockFault fault;
   fault.kind = kKinds.at(k);
   fault.recording = index;
-  fault.statistic = best.at(k).statistic;
+  fault.statistic = beside;
   const double t0 = fine[found.at];
   const double sign = fault.kind == ClockBreak::Jump ? -1.0 : 1.0;
   const double half = 1.96 * found.deviation;
@@ -349,8 +374,15 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
     }
     size += sign * best_of(left, fault.kind, {t0}).size;
   }
+  fault.t0_s = {t0, {t0 - step, t0 + step}};
+  widen(fault.t0_s.ci95, found, top, fine, step);
+  widen(fault.t0_s.ci95, anywhere, top, times, 1.0);
   fault.size = {size, {size - half, size + half}};
-  fault.t0_s = {fine[found.at], times_within(found, fine, step)};
+  for (const double end : {fault.t0_s.ci95.low, fault.t0_s.ci95.high}) {  // its size depends on when it was
+    const double at_end = size + sign * (best_of(white, fault.kind, {end}).size - found.size);
+    fault.size.ci95.low = std::min(fault.size.ci95.low, at_end);
+    fault.size.ci95.high = std::max(fault.size.ci95.high, at_end);
+  }
   for (const BlockMeans& blocks : raw) {
     fault.channels.push_back(blocks.channel);
   }
