@@ -41,10 +41,10 @@ TEST(ClockBreaks, IsSaidOfNoClockThatDoesNot) {
   EXPECT_EQ(reaching("reference_time_offset", 301, 50, kClockBreaks), 0);
 }
 
-/// A few times as many as reach the statistic beside an offset and a drift, which take most of a break for themselves.
+/// 35 and 36 of forty, less three standard errors; none of these seeds was looked at when kBreakSurpasses was chosen.
 TEST(ClockBreaks, IsSaidOfMostClocksThatDo) {
-  EXPECT_GE(reaching("clock_jump", 301, 20, kClockBreaks), 11);
-  EXPECT_GE(reaching("sampling_rate_change", 301, 20, kClockBreaks), 11);
+  EXPECT_GE(reaching("clock_jump", 501, 40, kClockBreaks), 29);
+  EXPECT_GE(reaching("sampling_rate_change", 501, 40, kClockBreaks), 30);
 }
 
 TEST(ClockMayBreak, IsSaidOfMostClocksThatBreak) {
