@@ -201,19 +201,21 @@ Scan scan(const BlockMeans& blocks, ClockBreak kind, const std::vector<double>& 
 constexpr Eigen::Index kOffset = 6;  ///< columns of an offset and of a drift of the whole clock
 constexpr Eigen::Index kDrift = 7;
 
+/// Sum of squares that least squares on the columns of x leaves.
+double sum_left(const Eigen::MatrixXd& x, const Eigen::VectorXd& error) {
+  return (error - x * x.completeOrthogonalDecomposition().solve(error)).squaredNorm();
+}
+
 /// Twice the log likelihood that an offset and a drift of the whole clock gain beside a break.
 double gain_of_whole_clock(const std::vector<BlockMeans>& all, ClockBreak kind, double t0_s) {
   double gain = 0.0;
   for (const BlockMeans& blocks : all) {
     Eigen::MatrixXd x(blocks.time.size(), kCommon + 1);
     x << blocks.common, broken(blocks, kind, t0_s);
-    const auto left = [&] {
-      return (blocks.error - x * x.completeOrthogonalDecomposition().solve(blocks.error)).squaredNorm();
-    };
-    const double with = left();
+    const double with = sum_left(x, blocks.error);
     x.col(kOffset).setZero();
     x.col(kDrift).setZero();
-    gain += blocks.used.sum() * std::log(left() / std::max(1e-300, with));
+    gain += blocks.used.sum() * std::log(sum_left(x, blocks.error) / std::max(1e-300, with));
   }
   return gain;
 }
@@ -227,13 +229,10 @@ void without_whole_clock(std::vector<BlockMeans>& all) {
 
 /// n ln(RSS/RSS'), of the common columns of one and of the other, without a break.
 double log_ratio(const std::vector<BlockMeans>& one, const std::vector<BlockMeans>& other) {
-  const auto left = [](const BlockMeans& blocks) {
-    const Eigen::MatrixXd& x = blocks.common;
-    return (blocks.error - x * x.completeOrthogonalDecomposition().solve(blocks.error)).squaredNorm();
-  };
   double sum = 0.0;
   for (std::size_t i = 0; i < one.size(); ++i) {
-    sum += one[i].used.sum() * std::log(left(one[i]) / std::max(1e-300, left(other[i])));
+    const double left = sum_left(other[i].common, other[i].error);
+    sum += one[i].used.sum() * std::log(sum_left(one[i].common, one[i].error) / std::max(1e-300, left));
   }
   return sum;
 }
