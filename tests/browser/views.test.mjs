@@ -314,6 +314,25 @@ test('an investigation’s figure ranks the sinusoids it identified first and ma
   await closed(page);
 });
 
+test('what was just answered is sent with the others, however late the daemon looks at it', async () => {
+  const page = await open(browser, daemon, '/upload');
+  const held = [];
+  let hold = false;
+  await page.route('**/v1/recordings/preview*', async route => { if (hold) await new Promise(go => held.push(go)); await route.continue(); });
+  const file = (name, seed) => ({name, mimeType: 'text/csv', buffer: Buffer.from(csv(400, seed))});
+  await page.locator('input[type=file]').setInputFiles([file('early.csv', 76), file('late.csv', 77)]);
+  await page.getByText('2 need an answer').waitFor();
+  hold = true;
+  for (const name of ['early.csv', 'late.csv']) await page.getByLabel(`Rate in Hz of ${name}`, {exact: true}).fill('100');
+  while (held.length < 2) await page.waitForTimeout(20);
+  held[0]();
+  await page.getByText('2 ready').waitFor();
+  await page.getByRole('button', {name: 'Upload only'}).click();
+  await page.getByText('2 stored').waitFor();
+  for (const release of held) release();
+  await closed(page);
+});
+
 test('what needs an answer is counted, and is not sent with what is clear', async () => {
   const file = (name, text) => ({name, mimeType: 'text/plain', buffer: Buffer.from(text)});
   const page = await open(browser, daemon, '/upload');

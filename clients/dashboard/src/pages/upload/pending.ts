@@ -17,6 +17,7 @@ export interface Pending {
   name?: string | undefined;               // of the recording, where it is not that of the file
   trim?: [number, number] | undefined;     // seconds at its beginning and end
   look: Look | null;
+  lookedAt?: string | undefined;           // what was said of it when the daemon was asked for `look`
   state: State;
   share: number;
   problem: Problem | null;
@@ -42,8 +43,12 @@ export function usePending(): readonly Pending[] {
 
 export const pending = (): readonly Pending[] => list;
 
-// What would be refused as it stands: its sentence stands beside the field that mends it.
-export const isUnclear = (each: Pending): boolean => each.state === 'ready' && (each.look?.document?.problems.length ?? 0) > 0;
+const SAID: readonly (keyof Pending)[] = ['device', 'condition', 'rate', 'roles'];
+const saidOf = (each: Pending): string => JSON.stringify(SAID.map(member => each[member]));
+
+// What would be refused as it stands: its sentence stands beside the field that mends it. A sentence about what has been changed since
+// holds nothing up: what was just answered is sent with the others.
+export const isUnclear = (each: Pending): boolean => each.state === 'ready' && (each.look?.document?.problems.length ?? 0) > 0 && each.lookedAt === saidOf(each);
 // What an upload sends: what is clear, or all there is, for the daemon to decide.
 export function toSend(all: readonly Pending[]): readonly Pending[] {
   const open = all.filter(each => each.state !== 'sent');
@@ -54,16 +59,15 @@ export function toSend(all: readonly Pending[]): readonly Pending[] {
 // --- the daemon is asked again once what was said of a file has changed, and nobody types any more
 const PAUSE_MS = 300;
 const waiting = new Map<number, ReturnType<typeof setTimeout>>();
-const SAID: readonly (keyof Pending)[] = ['device', 'condition', 'rate', 'roles'];
 
 async function look(key: number): Promise<void> {
   const asked = list.find(each => each.key === key);
   if (!asked) return;
   const seen = await lookAt(asked);
   const now = list.find(each => each.key === key);
-  if (!now || SAID.some(member => now[member] !== asked[member])) return;
+  if (!now || saidOf(now) !== saidOf(asked)) return;
   const known = asked.look === null && seen.document ? remembered()[signature(seen)] : undefined;
-  change(key, {look: seen, ...(known ? {roles: known.roles, rate: known.rate} : {})});
+  change(key, {look: seen, lookedAt: saidOf(asked), ...(known ? {roles: known.roles, rate: known.rate} : {})});
 }
 
 export function change(key: number, changes: Partial<Pending>): void {
