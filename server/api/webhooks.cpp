@@ -2,6 +2,7 @@
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
+#include "server/store/damaged_row.hpp"
 #include "server/webhooks/signature.hpp"
 
 #include <algorithm>
@@ -166,6 +167,9 @@ Result<Response> patch_webhook(ApiContext& context, const Request& request) {
 
 Result<Response> delete_webhook(ApiContext& context, const Request& request) {
   const auto webhook = context.webhooks->webhook(request.parameters[0]);
+  if (!webhook && !damaged_row_of(webhook.error()).empty() && request.header("if-match") == "*") {
+    return removed_response(context.webhooks->remove_webhook(request.parameters[0], Store::kAnyRevision));
+  }
   if (!webhook) {
     return fail(webhook.error());
   }
@@ -173,12 +177,7 @@ Result<Response> delete_webhook(ApiContext& context, const Request& request) {
   if (!revision) {
     return revision.error();
   }
-  if (const Status removed = context.webhooks->remove_webhook(webhook->id, *revision); !removed) {
-    return fail(removed.error());
-  }
-  Response response;
-  response.status = 204;
-  return response;
+  return removed_response(context.webhooks->remove_webhook(webhook->id, *revision));
 }
 
 Result<Response> rotate_webhook(ApiContext& context, const Request& request) {

@@ -4,7 +4,9 @@
 /// A delivery is written in the transaction that ends its job (server/store/sql/outbox.cpp), so that none is lost
 /// whatever happens to the process, and stays `waiting` until its answer is recorded: a receiver may see it twice, with
 /// the same id. Secrets are kept as they are, for signing needs them; whoever can read the database can sign.
-/// Methods are thread safe and may block on disk; every one may fail with ErrorCode::Io or DiskFull.
+/// Methods are thread safe and may block on disk; every one may fail with ErrorCode::Io or DiskFull, and those that
+/// read a webhook with damaged_row (damaged_row.hpp); only what is due names one whose row is damaged, so that its
+/// attempts end.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/store.hpp"
@@ -41,6 +43,7 @@ struct Webhook {
   UtcMicros updated_at = 0;
   std::optional<UtcMicros> disabled_at;
   std::string disabled_why;  ///< a sentence; empty: it is enabled
+  bool is_damaged = false;   ///< its row is not what was written: nothing is sent to it
 };
 
 struct WebhookChange {
@@ -99,7 +102,8 @@ class WebhookStore {
   /// Enabling forgets why it was disabled; disabling gives up what waits. NotFound; Conflict (field "revision").
   [[nodiscard]] virtual Result<Webhook> change_webhook(std::string_view id, const WebhookChange& change,
                                                        std::int64_t expected_revision) = 0;
-  /// Its deliveries go with it. NotFound; Conflict (field "revision").
+  /// Its deliveries go with it, and with Store::kAnyRevision also one whose row is damaged. NotFound; Conflict (field
+  /// "revision").
   [[nodiscard]] virtual Status remove_webhook(std::string_view id, std::int64_t expected_revision) = 0;
   /// Another secret; the old one signs too until `previous_until`. NotFound.
   [[nodiscard]] virtual Result<Webhook> rotate_webhook(std::string_view id, std::string_view secret,

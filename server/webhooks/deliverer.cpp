@@ -123,7 +123,9 @@ void Deliverer::deliver(const DueDelivery& due) {
   }
   PostAnswer answer;
   const auto destination = options_.guard.read(due.webhook.url);
-  if (destination) {
+  if (due.webhook.is_damaged) {
+    answer.error = "The row of the webhook is damaged, so that where it leads is not known.";
+  } else if (destination) {
     const std::int64_t timestamp_s = clock_.now() / kMicrosPerSecond;
     const WebhookDelivery& message = due.delivery;
     answer = post(options_.guard, *destination,

@@ -6,11 +6,13 @@ import json
 import os
 import signal
 import socket
+import sqlite3
 import subprocess
 import tempfile
 import threading
 import time
 import unittest
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -277,6 +279,41 @@ class Lives(unittest.TestCase):
                 messages[0].verify(secret)
                 self.assertEqual(messages[0].document["data"]["state"], "succeeded")
                 self.assertEqual(len({message.id for message in messages}), 1)
+
+    def test_a_webhook_whose_row_is_damaged_is_told_nothing(self) -> None:
+        """A changed byte of its address would carry what ended to somebody else."""
+        with tempfile.TemporaryDirectory() as folder, Receiver() as receiver, Receiver() as stranger:
+            data = Path(folder) / "data"
+            limits = ("--budget", "scrub_bytes_per_second=0", "--budget", "webhook_attempts=2", "--budget", "webhook_give_ups=1")
+            with Daemon(data, arguments=QUICK, environment={"DRIFTLAB_CRASH_AT": "job.finished"}) as daemon:
+                hook = daemon.post("/v1/webhooks", {"url": receiver.url}).json["id"]
+                try:
+                    recording = daemon.upload(samples.gyro_csv(seed=1), rate_hz=100, columns=samples.GYRO_Z).json["id"]
+                    daemon.finished(daemon.characterise(recording, models=["WN"]).json["id"])
+                except LOST:
+                    pass
+                self.assertEqual(daemon.wait(), -signal.SIGKILL)
+            with closing(sqlite3.connect(data / "driftlab.db")) as database, database:
+                self.assertEqual(database.execute("SELECT state FROM webhook_deliveries").fetchall(), [("waiting",)])
+                database.execute("UPDATE webhooks SET url = ?", (stranger.url,))
+            with Daemon(data, arguments=QUICK + limits) as daemon:
+                until = time.monotonic() + 60
+                why = ""
+                while not why and time.monotonic() < until:
+                    with closing(sqlite3.connect(data / "driftlab.db")) as database:
+                        [why] = database.execute("SELECT disabled_why FROM webhooks").fetchone()
+                    time.sleep(0.05)
+                self.assertEqual(why, "1 delivery was given up; the last attempt: The row of the webhook is damaged, so that where it leads is "
+                                      "not known.")
+                states = daemon.get("/readyz").json["states"]
+                self.assertEqual([(state["state"], state["row"]) for state in states], [("row_damaged", f"webhooks/{hook}")])
+                for target in ("/v1/webhooks", f"/v1/webhooks/{hook}"):
+                    unsaid = daemon.get(target)
+                    self.assertEqual((unsaid.status, unsaid.json["where"]), (500, {"damaged_row": f"webhooks/{hook}"}))
+                self.assertEqual(daemon.post(f"/v1/webhooks/{hook}/rotate").status, 500)
+                self.assertEqual(daemon.request("DELETE", f"/v1/webhooks/{hook}", headers={"If-Match": "*"}).status, 204)
+                self.assertEqual(daemon.items("/v1/webhooks"), [])
+            self.assertEqual((receiver.messages, stranger.messages), ([], []))
 
     def test_a_message_whose_answer_nobody_saw_comes_again_with_the_same_id(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

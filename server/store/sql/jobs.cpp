@@ -188,7 +188,7 @@ Result<Job> job(Connection& connection, std::string_view id) {
 
 Result<Job> sound_job(Connection& connection, std::string_view id) {
   Result<Job> found = job(connection, id);
-  return found && found->is_damaged ? fail(damaged_row("jobs", sealed_table("jobs").noun, found->id)) : found;
+  return found && found->is_damaged ? fail(damaged_in("jobs", found->id)) : found;
 }
 
 Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {

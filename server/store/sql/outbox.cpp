@@ -243,7 +243,7 @@ Result<std::optional<DueDelivery>> due(Connection& connection, const std::vector
   if (!next) {
     return std::optional<DueDelivery>();
   }
-  return webhook(connection, next->webhook_id).map([&](Webhook found) {
+  return any_webhook(connection, next->webhook_id).map([&](Webhook found) {
     return std::optional(DueDelivery{std::move(found), std::move(*next)});
   });
 }

@@ -90,6 +90,7 @@ const std::vector<SealedTable>& sealed_tables() {
       {"artefacts", "file of a result", {"job_id", "name"}, "job_id, name, content"},
       {"idempotent_replies", "reply", {"key"}, "key, method, target, body_sha256, status, headers_json, body"},
       {"tokens", "token", {"id"}, "id, name, scope, devices_json, secret_sha256, created_at, expires_at, revoked_at"},
+      {"webhooks", "webhook", {"id"}, "id, url, description, events_json, secret, previous_secret"},
   };
   return tables;
 }
@@ -154,9 +155,13 @@ std::string seal_of_texts(const std::vector<std::string_view>& texts) {
 Result<std::string> sound_text(std::string_view table, std::vector<std::string> texts, const std::string& seal) {
   if (!seal_fits(seal, seal_of_texts({texts.begin(), texts.end()}))) {
     const std::vector<std::string> key(texts.begin(), texts.end() - 1);
-    return fail(damaged_row(table, sealed_table(table).noun, joined(key, "/")));
+    return fail(damaged_in(table, joined(key, "/")));
   }
   return std::move(texts.back());
+}
+
+Error damaged_in(std::string_view table, std::string_view key) {
+  return damaged_row(table, sealed_table(table).noun, key);
 }
 
 const SealedTable& sealed_table(std::string_view name) {
@@ -236,6 +241,15 @@ Result<int> seal_rows(Connection& connection, const SealedTable& table, int limi
     }
   }
   return static_cast<int>(sealed_rows.size());
+}
+
+Status run_and_seal(Connection& connection, std::string_view table, Statement& change) {
+  constexpr int kMost = 1000;
+  if (Status changed = change.run(); !changed) {
+    return changed;
+  }
+  const Result<int> sealed = seal_rows(connection, sealed_table(table), kMost);
+  return sealed ? Status{} : fail(sealed.error());
 }
 
 }  // namespace driftlab::server

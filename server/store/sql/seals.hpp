@@ -3,9 +3,9 @@
 ///
 /// A row of a sealed table has the SHA-256 of its sealed columns in its column `seal`, written by the statement that
 /// writes them and compared whenever the row is read, in the background (server/scrubber.hpp) and by `driftlabd check`.
-/// Sealed is what results are made of and answers say, and what lets somebody in. Times, states and counters are not:
-/// they change by statements of their own, and no result depends on them. An empty seal is that of a row of an earlier
-/// release; a daemon fills it in when it starts.
+/// Sealed is what results are made of and answers say, what lets somebody in, and whom the daemon tells. Times, states
+/// and counters are not: they change by statements of their own, and no result depends on them. An empty seal is that
+/// of a row of an earlier release; a daemon fills it in when it starts.
 #include "core/signal/result.hpp"
 #include "server/store/damaged_row.hpp"
 #include "server/store/rows.hpp"
@@ -46,7 +46,7 @@ struct SealedTable {
 [[nodiscard]] std::string seal_of(const ResultVerdict& verdict);
 [[nodiscard]] std::string seal_of(const Anchor& anchor);
 [[nodiscard]] std::string seal_of(const IdempotentReply& reply);
-/// Of the sealed columns as texts, which is how job_results, artefacts and tokens are sealed.
+/// Of the sealed columns as texts, which is how job_results, artefacts, tokens and webhooks are sealed.
 [[nodiscard]] std::string seal_of_texts(const std::vector<std::string_view>& texts);
 
 /// Whether a seal fits. One that was never made fits everything.
@@ -54,11 +54,14 @@ struct SealedTable {
   return seal.empty() || seal == made_now;
 }
 
+/// The error of a damaged row of that table; `key` names it.
+[[nodiscard]] Error damaged_in(std::string_view table, std::string_view key);
+
 /// The row of that table, if its seal fits; `key` names it. Error: damaged_row.
 template <class Row>
 [[nodiscard]] Result<Row> sound_row(std::string_view table, const std::string& key, Row row, const std::string& seal) {
   if (!seal_fits(seal, seal_of(row))) {
-    return fail(damaged_row(table, sealed_table(table).noun, key));
+    return fail(damaged_in(table, key));
   }
   return row;
 }
@@ -81,5 +84,8 @@ struct ReadBack {
 
 /// Seals `limit` rows of a table that have no seal. How many there were.
 [[nodiscard]] Result<int> seal_rows(Connection& connection, const SealedTable& table, int limit);
+
+/// Runs a change that leaves its rows, a thousand at most, without a seal, and seals them.
+[[nodiscard]] Status run_and_seal(Connection& connection, std::string_view table, Statement& change);
 
 }  // namespace driftlab::server

@@ -17,7 +17,7 @@ Result<std::vector<Token>> SqlAccess::tokens() {
   auto all = database_.read([](Connection& c) { return tables::tokens(c); });
   for (const Token& token : all ? *all : std::vector<Token>{}) {
     if (token.is_damaged) {
-      database_.tell_damage(damaged_row("tokens", "token", token.id));
+      database_.tell_damage(damaged_in("tokens", token.id));
     }
   }
   return all;

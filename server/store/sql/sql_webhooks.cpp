@@ -1,5 +1,7 @@
 #include "server/store/sql/sql_webhooks.hpp"
 
+#include "server/store/sql/seals.hpp"
+
 namespace driftlab::server {
 namespace {
 
@@ -57,7 +59,11 @@ Result<std::vector<WebhookDelivery>> SqlWebhooks::deliveries(std::string_view we
 }
 
 Result<std::optional<DueDelivery>> SqlWebhooks::due(const std::vector<std::string>& busy) {
-  return database_.read([&](Connection& c) { return tables::due(c, busy, database_.now(c)); });
+  auto next = database_.read([&](Connection& c) { return tables::due(c, busy, database_.now(c)); });
+  if (next && *next && (*next)->webhook.is_damaged) {
+    database_.tell_damage(damaged_in("webhooks", (*next)->webhook.id));
+  }
+  return next;
 }
 
 Result<bool> SqlWebhooks::record_attempt(const WebhookDelivery& delivery, const DeliveryOutcome& outcome) {

@@ -1,4 +1,3 @@
-#include "server/store/damaged_row.hpp"
 #include "server/store/sql/access_tables.hpp"
 #include "server/store/sql/seals.hpp"
 
@@ -73,16 +72,6 @@ Result<Token> token_of(Connection& connection, std::string_view id) {
                  {ErrorCode::NotFound, "There is no token \"" + std::string(id) + "\".", {{"token", std::string(id)}}});
 }
 
-/// Runs a change that leaves its rows without a seal, and seals them.
-Status run_and_seal(Connection& connection, Statement& change) {
-  constexpr int kMost = 1000;  // tokens that there can be
-  if (Status changed = change.run(); !changed) {
-    return changed;
-  }
-  const Result<int> sealed = seal_rows(connection, sealed_table("tokens"), kMost);
-  return sealed ? Status{} : fail(sealed.error());
-}
-
 }  // namespace
 
 Result<std::vector<Token>> tokens(Connection& connection) {
@@ -96,7 +85,7 @@ Result<Token> add_token(Connection& connection, const Token& token, UtcMicros no
   Statement insert = connection.prepare(kInsert);
   insert.bind(made.id, made.name, name_of(made.scope), written(made.devices), made.secret_sha256, made.created_at,
               made.expires_at);
-  if (Status inserted = run_and_seal(connection, insert); !inserted) {
+  if (Status inserted = run_and_seal(connection, "tokens", insert); !inserted) {
     return fail(inserted.error());
   }
   return made;
@@ -110,7 +99,7 @@ Result<RevokedToken> revoke_token(Connection& connection, std::string_view id, U
   const bool changed = !found->revoked_at;
   Statement revoke = connection.prepare(kRevoke);
   revoke.bind(id, now);
-  if (Status revoked = run_and_seal(connection, revoke); !revoked) {
+  if (Status revoked = run_and_seal(connection, "tokens", revoke); !revoked) {
     return fail(revoked.error());
   }
   if (Status ended = connection.prepare(kEndAll).bind(id).run(); !ended) {
@@ -129,11 +118,11 @@ Result<Token> rotate_token(Connection& connection, std::string_view id, std::str
                 {{"token", found->id}});
   }
   if (found->is_damaged) {
-    return fail(damaged_row("tokens", "token", id));
+    return fail(damaged_in("tokens", id));
   }
   Statement rotate = connection.prepare(kRotate);
   rotate.bind(id, secret_sha256, now);
-  if (Status rotated = run_and_seal(connection, rotate); !rotated) {
+  if (Status rotated = run_and_seal(connection, "tokens", rotate); !rotated) {
     return fail(rotated.error());
   }
   if (Status ended = connection.prepare(kEndAll).bind(id).run(); !ended) {

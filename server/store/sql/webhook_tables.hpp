@@ -15,7 +15,10 @@ namespace driftlab::server::tables {
 
 // ---- webhooks
 [[nodiscard]] Result<std::vector<Webhook>> webhooks(Connection& connection, const Page& page);
+/// Those that are told what ends; one whose row is damaged is not.
 [[nodiscard]] Result<std::vector<Webhook>> enabled_webhooks(Connection& connection);
+/// Whether its row is sound or not. NotFound.
+[[nodiscard]] Result<Webhook> any_webhook(Connection& connection, std::string_view id);
 [[nodiscard]] Result<Webhook> webhook(Connection& connection, std::string_view id);
 [[nodiscard]] Result<Webhook> add_webhook(Connection& connection, const Webhook& webhook, std::int64_t most,
                                           UtcMicros now);

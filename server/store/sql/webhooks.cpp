@@ -1,13 +1,16 @@
+#include "server/store/sql/seals.hpp"
 #include "server/store/sql/webhook_tables.hpp"
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace driftlab::server::tables {
 namespace {
 
 #define DRIFTLAB_WEBHOOK_COLUMNS                                                                                 \
   "id, url, description, events_json, secret, previous_secret, previous_until, given_up, revision, created_at, " \
-  "updated_at, disabled_at, disabled_why"
+  "updated_at, disabled_at, disabled_why, seal"
 
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_WEBHOOK_COLUMNS " FROM webhooks";
 constexpr std::string_view kEnabled =
@@ -18,8 +21,8 @@ constexpr std::string_view kInsert =
     "INSERT INTO webhooks (id, url, description, events_json, secret, created_at, updated_at) "
     "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?6)";
 constexpr std::string_view kChange =
-    "UPDATE webhooks SET url = ?2, description = ?3, events_json = ?4, updated_at = ?5, revision = revision + 1 "
-    "WHERE id = ?1";
+    "UPDATE webhooks SET url = ?2, description = ?3, events_json = ?4, updated_at = ?5, revision = revision + 1, "
+    "seal = '' WHERE id = ?1";
 constexpr std::string_view kEnable =
     "UPDATE webhooks SET disabled_at = NULL, disabled_why = '', given_up = 0 WHERE id = ?";
 constexpr std::string_view kDisable =
@@ -31,7 +34,7 @@ constexpr std::string_view kGiveUpWaiting =
 constexpr std::string_view kRemove = "DELETE FROM webhooks WHERE id = ?";
 constexpr std::string_view kRotate =
     "UPDATE webhooks SET previous_secret = secret, previous_until = ?3, secret = ?2, updated_at = ?4, "
-    "revision = revision + 1 WHERE id = ?1";
+    "revision = revision + 1, seal = '' WHERE id = ?1";
 
 std::string written(const std::vector<std::string>& events) { return nlohmann::json(events).dump(); }
 
@@ -53,6 +56,8 @@ Webhook read_webhook(const Statement& row) {
   webhook.updated_at = row.integer(10);
   webhook.disabled_at = row.optional_integer(11);
   webhook.disabled_why = row.text(12);
+  webhook.is_damaged = !seal_fits(row.text(13), seal_of_texts({webhook.id, webhook.url, webhook.description,
+                                                               row.text(3), webhook.secret, webhook.previous_secret}));
   return webhook;
 }
 
@@ -72,20 +77,32 @@ Result<Webhook> webhook_as_read(Connection& connection, std::string_view id, std
 
 Result<std::vector<Webhook>> webhooks(Connection& connection, const Page& page) {
   FilteredQuery query(kSelect);
-  return query.read_page(connection, page, read_webhook);
+  auto found = query.read_page(connection, page, read_webhook);
+  const auto all = found.value_or(std::vector<Webhook>{});
+  const auto damaged = std::ranges::find_if(all, &Webhook::is_damaged);
+  return damaged == all.end() ? found : fail(damaged_in("webhooks", damaged->id));
 }
 
 Result<std::vector<Webhook>> enabled_webhooks(Connection& connection) {
   Statement statement = connection.prepare(kEnabled);
-  return all_rows(statement, read_webhook);
+  auto enabled = all_rows(statement, read_webhook);
+  if (enabled) {
+    std::erase_if(*enabled, &Webhook::is_damaged);
+  }
+  return enabled;
 }
 
-Result<Webhook> webhook(Connection& connection, std::string_view id) {
+Result<Webhook> any_webhook(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
   return one_row(
       statement, read_webhook,
       {ErrorCode::NotFound, "There is no webhook \"" + std::string(id) + "\".", {{"webhook", std::string(id)}}});
+}
+
+Result<Webhook> webhook(Connection& connection, std::string_view id) {
+  auto found = any_webhook(connection, id);
+  return found && found->is_damaged ? fail(damaged_in("webhooks", id)) : found;
 }
 
 Result<Webhook> add_webhook(Connection& connection, const Webhook& webhook, std::int64_t most, UtcMicros now) {
@@ -103,9 +120,9 @@ Result<Webhook> add_webhook(Connection& connection, const Webhook& webhook, std:
     }
   }
   const std::string id = make_id("whk", now);
-  const Status inserted = connection.prepare(kInsert)
-                              .bind(id, webhook.url, webhook.description, written(webhook.events), webhook.secret, now)
-                              .run();
+  Statement insert = connection.prepare(kInsert);
+  insert.bind(id, webhook.url, webhook.description, written(webhook.events), webhook.secret, now);
+  const Status inserted = run_and_seal(connection, "webhooks", insert);
   return inserted ? tables::webhook(connection, id) : fail(inserted.error());
 }
 
@@ -115,10 +132,10 @@ Result<Webhook> change_webhook(Connection& connection, std::string_view id, cons
   if (!found) {
     return fail(found.error());
   }
-  Status changed = connection.prepare(kChange)
-                       .bind(id, change.url.value_or(found->url), change.description.value_or(found->description),
-                             written(change.events.value_or(found->events)), now)
-                       .run();
+  Statement update = connection.prepare(kChange);
+  update.bind(id, change.url.value_or(found->url), change.description.value_or(found->description),
+              written(change.events.value_or(found->events)), now);
+  Status changed = run_and_seal(connection, "webhooks", update);
   if (changed && change.enabled) {
     changed = *change.enabled ? connection.prepare(kEnable).bind(id).run()
                               : disable_webhook(connection, id, "It was disabled by hand.", now);
@@ -127,7 +144,9 @@ Result<Webhook> change_webhook(Connection& connection, std::string_view id, cons
 }
 
 Status remove_webhook(Connection& connection, std::string_view id, std::int64_t expected_revision) {
-  if (const auto found = webhook_as_read(connection, id, expected_revision); !found) {
+  const auto found = expected_revision == Store::kAnyRevision ? any_webhook(connection, id)
+                                                              : webhook_as_read(connection, id, expected_revision);
+  if (!found) {
     return fail(found.error());
   }
   return connection.prepare(kRemove).bind(id).run();
@@ -135,7 +154,12 @@ Status remove_webhook(Connection& connection, std::string_view id, std::int64_t 
 
 Result<Webhook> rotate_webhook(Connection& connection, std::string_view id, std::string_view secret,
                                UtcMicros previous_until, UtcMicros now) {
-  if (Status rotated = connection.prepare(kRotate).bind(id, secret, previous_until, now).run(); !rotated) {
+  if (const auto found = webhook(connection, id); !found) {
+    return fail(found.error());
+  }
+  Statement rotate = connection.prepare(kRotate);
+  rotate.bind(id, secret, previous_until, now);
+  if (Status rotated = run_and_seal(connection, "webhooks", rotate); !rotated) {
     return fail(rotated.error());
   }
   return webhook(connection, id);

@@ -64,6 +64,15 @@ class SealedRows : public StoreSuite {
   }
 };
 
+Webhook webhook_to(const std::string& url) {
+  Webhook webhook;
+  webhook.url = url;
+  webhook.description = "a line";
+  webhook.events = {"job.ended"};
+  webhook.secret = "whsec_a";
+  return webhook;
+}
+
 Readers SealedRows::fill() {
   const Device device = add_device(store());
   const Recording recording = add_recording(store(), device);
@@ -105,6 +114,8 @@ Readers SealedRows::fill() {
   token.secret_sha256 = std::string(64, 'a');
   token.expires_at = 1'000'000;
   EXPECT_TRUE(rows().access().add_token(token));
+  const Webhook webhook = *rows().webhooks().add_webhook(webhook_to("https://lab.example/hook"), 9);
+  EXPECT_TRUE(rows().webhooks().rotate_webhook(webhook.id, "whsec_b", 0));
   const std::string fit = results.fits.front().id;
   return {
       {"devices", [=, this] { return error_of(store().device(device.id)); }},
@@ -130,6 +141,7 @@ Readers SealedRows::fill() {
          const bool is_damaged = all && all->front().is_damaged;
          return is_damaged ? std::optional(damaged_row("tokens", "token", all->front().id)) : error_of(all);
        }},
+      {"webhooks", [=, this] { return error_of(rows().webhooks().webhook(webhook.id)); }},
   };
 }
 
@@ -248,6 +260,28 @@ TEST_P(SealedRows, ADamagedTokenIsRevokedAndNotRotated) {
   ASSERT_TRUE(access.revoke_token("aaaaaaaa"));
   EXPECT_FALSE(access.tokens()->front().is_damaged);
   EXPECT_TRUE(access.tokens()->front().revoked_at);
+  EXPECT_THAT(damaged(), IsEmpty());
+}
+
+TEST_P(SealedRows, ADamagedWebhookIsToldNothingAndCanBeRemoved) {
+  WebhookStore& hooks = rows().webhooks();
+  const Webhook webhook = *hooks.add_webhook(webhook_to("https://a.example/"), 9);
+  WebhookChange change;
+  change.description = "a line";
+  ASSERT_TRUE(hooks.change_webhook(webhook.id, change, 1));
+  ASSERT_TRUE(hooks.rotate_webhook(webhook.id, "t", 0));
+  ASSERT_TRUE(hooks.test_webhook(webhook.id));
+  EXPECT_THAT(damaged(), IsEmpty());
+  ASSERT_TRUE(write(sealed_table("webhooks"), "url", "https://b.example/"));
+  const std::string row = "webhooks/" + webhook.id;
+  EXPECT_EQ(damaged_row_of(hooks.webhooks({}).error()), row);
+  EXPECT_EQ(damaged_row_of(hooks.rotate_webhook(webhook.id, "u", 0).error()), row);
+  EXPECT_EQ(damaged_row_of(hooks.change_webhook(webhook.id, change, 3).error()), row);
+  const auto due = hooks.due({});
+  ASSERT_TRUE(due && *due);
+  EXPECT_TRUE((*due)->webhook.is_damaged);
+  ASSERT_TRUE(hooks.remove_webhook(webhook.id, Store::kAnyRevision));
+  EXPECT_THAT(*hooks.webhooks({}), IsEmpty());
   EXPECT_THAT(damaged(), IsEmpty());
 }
 
