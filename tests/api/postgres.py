@@ -42,6 +42,11 @@ def become_owner() -> None:
 
 
 class Cluster:
+    """`settings`: of the server beside its own, such as `ssl=on`."""
+
+    settings: tuple[str, ...] = ()
+    port = 5432  # of the socket in its folder, and of the addresses that `settings` may name
+
     def __init__(self) -> None:
         folder = programs()
         assert folder is not None, "there is no PostgreSQL 15 in /usr/lib/postgresql"
@@ -64,9 +69,10 @@ class Cluster:
     def start(self) -> None:
         with open(self.folder / "log", "ab") as log:
             self.server = subprocess.Popen(
-                [self.programs / "postgres", "-D", self.folder / "data", "-k", self.folder, "-c", "listen_addresses=", "-c", "fsync=off"],
+                [self.programs / "postgres", "-D", self.folder / "data", "-k", self.folder, "-c", "listen_addresses=", "-c", "fsync=off", "-p", str(self.port),
+                 *(word for setting in self.settings for word in ("-c", setting))],
                 stdout=log, stderr=log, preexec_fn=become_owner, cwd="/")
-        self._until(lambda: subprocess.run([self.programs / "pg_isready", "--quiet", f"--host={self.folder}"]).returncode == 0)
+        self._until(lambda: subprocess.run([self.programs / "pg_isready", "--quiet", f"--host={self.folder}", f"--port={self.port}"]).returncode == 0)
 
     def stop(self) -> None:
         """At once, as a crash would: connections are cut."""
@@ -88,7 +94,7 @@ class Cluster:
     def sql(self, statements: str) -> str:
         """Runs statements as superuser; the rows of the last, a line each."""
         writable = "dbname=postgres options='-c default_transaction_read_only=off'"
-        return self._run("psql", f"--host={self.folder}", "--username=driftlab", f"--dbname={writable}", "--no-psqlrc", "--quiet",
+        return self._run("psql", f"--host={self.folder}", f"--port={self.port}", "--username=driftlab", f"--dbname={writable}", "--no-psqlrc", "--quiet",
                          "--tuples-only", "--no-align", "--set=ON_ERROR_STOP=1", f"--command={statements}").strip()
 
     @staticmethod
@@ -104,7 +110,7 @@ class Cluster:
 
     def dump(self, data: Path) -> bytes:
         """The store of a data directory as pg_dump writes it."""
-        return self._run("pg_dump", f"--host={self.folder}", "--username=driftlab", "--dbname=postgres", f"--schema={self.schema_of(data)}").encode()
+        return self._run("pg_dump", f"--host={self.folder}", f"--port={self.port}", "--username=driftlab", "--dbname=postgres", f"--schema={self.schema_of(data)}").encode()
 
     def store_of(self, data: Path) -> str:
         """The connection string for a data directory: the same for the same directory."""

@@ -283,6 +283,90 @@ TEST_F(PostgresStoreTest, ConnectionsHaveTheSettingsOfTheHouse) {
   }
 }
 
+TEST_F(PostgresStoreTest, AStatementAndALockEndWithTheirTime) {
+  const auto connection = PostgresConnection::open(uri_, "first");
+  const auto other = PostgresConnection::open(uri_, "other");
+  ASSERT_TRUE(connection && other);
+  ASSERT_TRUE((*other)->execute("CREATE TABLE held (x INT)"));
+  ASSERT_TRUE((*other)->execute("BEGIN; LOCK TABLE held"));
+  for (const auto& [limit, statement] : {std::pair{"statement_timeout", "SELECT pg_sleep(60)::TEXT"},
+                                         std::pair{"lock_timeout", "SELECT count(*)::TEXT FROM held"}}) {
+    ASSERT_TRUE((*connection)->begin(std::string("BEGIN; SET LOCAL ") + limit + " = 50"));
+    const auto ended = (*connection)->query_text(statement);
+    ASSERT_FALSE(ended) << limit;
+    EXPECT_EQ(ended.error().code, ErrorCode::Io);
+    EXPECT_THAT(ended.error().message, AllOf(HasSubstr("took too long: canceling statement due to"), EndsWith(".")));
+    (*connection)->roll_back();
+    EXPECT_FALSE((*connection)->is_broken()) << "it can be used again";
+  }
+}
+
+// A COMMIT whose wait for the standby is cut short is called done, though the write lies on one server alone.
+TEST_F(PostgresStoreTest, AWriteIsAcknowledgedWhenTheSynchronousStandbyHasIt) {
+  const auto connection = PostgresConnection::open(uri_, "driftlabd");
+  ASSERT_TRUE(connection);
+  ASSERT_TRUE((*connection)->execute("CREATE TABLE written (x INT)"));
+  ASSERT_TRUE(cluster().run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'"));
+  ASSERT_TRUE(cluster().run("SELECT pg_reload_conf()"));
+  const auto named = [&] { return (*connection)->query_text("SHOW synchronous_standby_names"); };
+  while (named().value_or("") != "nobody") {
+  }
+  ASSERT_TRUE((*connection)->begin("BEGIN; SET LOCAL statement_timeout = 100"));
+  ASSERT_TRUE((*connection)->execute("INSERT INTO written VALUES (1)"));
+  std::atomic<bool> ended{false};
+  Status committed;
+  std::thread writer([&] {
+    committed = (*connection)->commit();
+    ended = true;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // six times the limit of the statement
+  EXPECT_FALSE(ended);
+  const auto reader = PostgresConnection::open(uri_, "reader");
+  ASSERT_TRUE(reader);
+  EXPECT_EQ((*reader)->query_integer("SELECT count(*) FROM written").value_or(std::nullopt), 0)
+      << "nobody reads it yet";
+  ASSERT_TRUE(cluster().run("ALTER SYSTEM RESET synchronous_standby_names"));
+  ASSERT_TRUE(cluster().run("SELECT pg_reload_conf()"));
+  writer.join();
+  EXPECT_TRUE(committed);
+  EXPECT_EQ((*reader)->query_integer("SELECT count(*) FROM written").value_or(std::nullopt), 1);
+  EXPECT_EQ((*connection)->query_text("SHOW statement_timeout").value_or(""), "30s");
+}
+
+/// When a pool of this seed asks a database that does not answer, in milliseconds after its first attempt.
+std::vector<double> attempts_within(std::chrono::milliseconds time, std::uint64_t seed) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<Clock::time_point> at;
+  ConnectionPool pool(
+      [&]() -> Result<std::unique_ptr<PostgresConnection>> {
+        at.push_back(Clock::now());
+        return fail(ErrorCode::Io, "It does not answer.");
+      },
+      1, seed);
+  for (const auto until = Clock::now() + time; Clock::now() < until; std::this_thread::yield()) {
+    EXPECT_FALSE(pool.take());
+  }
+  std::vector<double> after;
+  for (const auto& moment : at) {
+    after.push_back(std::chrono::duration<double, std::milli>(moment - at.front()).count());
+  }
+  return after;
+}
+
+TEST(PostgresPool, AsksASilentDatabaseAgainAfterPausesThatGrowAndThatDifferBetweenDaemons) {
+  const std::chrono::milliseconds time(1600);
+  const std::vector<double> one = attempts_within(time, 1);
+  const std::vector<double> other = attempts_within(time, 2);
+  for (const std::vector<double>& at : {one, other}) {
+    // Pauses of at most 100, 200, 400 and 800 ms, each at least its half: four or five attempts begin in 1.6 s.
+    ASSERT_THAT(at.size(), testing::AllOf(testing::Ge(4U), testing::Le(6U)));
+    for (std::size_t i = 1; i < at.size(); ++i) {
+      EXPECT_GE(at[i] - at[i - 1], 50.0 * static_cast<double>(1U << (i - 1)) - 1.0) << i;
+    }
+  }
+  EXPECT_GT(std::abs(one[1] - other[1]), 1.0) << "they do not come back together";
+}
+
 TEST_F(PostgresStoreTest, AnotherSchemaIsRefusedAtStartAndWhileItRuns) {
   const auto store = open();
   ASSERT_TRUE(store->ping());
