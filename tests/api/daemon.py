@@ -51,6 +51,9 @@ class Answer:
 class Daemon:
     """One `driftlabd` process on a directory of its own, on a free port. A context manager: killed at the end."""
 
+    host = "127.0.0.1"  # where it is asked
+    patience_s = PATIENCE_S  # for an answer
+
     def __init__(self, data: Path | None = None, *, arguments: tuple[str, ...] = (), environment: dict[str, str] | None = None,
                  before_exec: Callable[[], None] | None = None, listen: str = "127.0.0.1:0") -> None:
         self._own = Path(tempfile.mkdtemp(prefix="driftlab-test-")) if data is None else None
@@ -136,7 +139,7 @@ class Daemon:
             body = json.dumps(body).encode()
         if body:
             sent.setdefault("Content-Type", "application/json")
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
+        connection = http.client.HTTPConnection(self.host, self.port, timeout=self.patience_s)
         try:
             connection.request(method, target, body=body, headers=sent)
             response = connection.getresponse()
@@ -193,7 +196,7 @@ class Daemon:
 
     def connect(self) -> socket.socket:
         """A bare connection, for what no HTTP client would send."""
-        return socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE_S)
+        return socket.create_connection((self.host, self.port), timeout=PATIENCE_S)
 
     def exchange(self, text: bytes) -> bytes:
         """Sends bytes as they are and reads until the daemon closes."""
@@ -295,7 +298,7 @@ class Event:
 
 def events(daemon: Daemon, job: str, last: int | None = None) -> Iterator[Event]:
     """The server-sent events of a job until the stream closes."""
-    connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=PATIENCE_S)
+    connection = http.client.HTTPConnection(daemon.host, daemon.port, timeout=PATIENCE_S)
     try:
         connection.request("GET", f"/v1/jobs/{job}/events", headers={} if last is None else {"Last-Event-ID": str(last)})
         response = connection.getresponse()

@@ -48,6 +48,12 @@ class Cluster:
     port = 5432  # of the socket in its folder, and of the addresses that `settings` may name
 
     def __init__(self) -> None:
+        self._take_folder()
+        self._make_data()
+        self.start()
+        atexit.register(self.remove)
+
+    def _take_folder(self) -> None:
         folder = programs()
         assert folder is not None, "there is no PostgreSQL 15 in /usr/lib/postgresql"
         self.programs = folder
@@ -55,14 +61,18 @@ class Cluster:
         if os.getuid() == 0:
             owner = pwd.getpwnam("postgres")
             os.chown(self.folder, owner.pw_uid, owner.pw_gid)
+
+    def _make_data(self) -> None:
         self._run("initdb", f"--pgdata={self.folder / 'data'}", "--username=driftlab", "--auth=trust", "--encoding=UTF8",
                   "--locale=C.UTF-8", "--no-sync")
-        self.start()
-        atexit.register(self.remove)
+
+    def _in_child(self) -> None:
+        """Before a program of the server begins."""
+        become_owner()
 
     def _run(self, program: str, *arguments: str) -> str:
         done = subprocess.run([self.programs / program, *arguments], capture_output=True, text=True, timeout=PATIENCE_S,
-                              preexec_fn=become_owner, cwd="/")
+                              preexec_fn=self._in_child, cwd="/")
         assert done.returncode == 0, done.stderr
         return done.stdout
 
@@ -71,7 +81,7 @@ class Cluster:
             self.server = subprocess.Popen(
                 [self.programs / "postgres", "-D", self.folder / "data", "-k", self.folder, "-c", "listen_addresses=", "-c", "fsync=off", "-p", str(self.port),
                  *(word for setting in self.settings for word in ("-c", setting))],
-                stdout=log, stderr=log, preexec_fn=become_owner, cwd="/")
+                stdout=log, stderr=log, preexec_fn=self._in_child, cwd="/")
         self._until(lambda: subprocess.run([self.programs / "pg_isready", "--quiet", f"--host={self.folder}", f"--port={self.port}"]).returncode == 0)
 
     def stop(self) -> None:
