@@ -24,7 +24,7 @@ driftlab_packages() {
     dashboard) command -v node >/dev/null || echo nodejs; command -v npm >/dev/null || echo npm ;;
     browser) echo chromium fonts-liberation poppler-utils ;;
     test) echo libgtest-dev libgmock-dev libbenchmark-dev python3-numpy python3-h5py python3-jsonschema xz-utils zstd sqlite3 postgresql prometheus zsh fish \
-               python3-swift awscli ;;
+               python3-swift awscli iproute2 ;;
     python) echo python3-venv python3-pip python3-setuptools python3-wheel python3-yaml mypy flake8 jupyter-nbconvert python3-ipykernel ;;
     fuzz) echo clang-19 libclang-rt-19-dev ;;
     sanitize) echo clang-19 libclang-rt-19-dev ;;

@@ -18,6 +18,7 @@ from daemon import PATIENCE_S, Daemon, events
 from history import LOST
 
 MODELS = ["WN", "WN+GM"]
+STREAMS = 12  # of so many jobs the stream of events is read too
 
 
 class Told:
@@ -53,10 +54,10 @@ class Client(threading.Thread):
     def content(self) -> bytes:
         return samples.gyro_csv(2048, seed=self.random.randrange(1 << 30))
 
-    def ask(self, content: bytes) -> str | None:
+    def ask(self, content: bytes, device: str = "phone-07") -> str | None:
         """Uploads it and asks for its results; the job, or nothing where one of both was not acknowledged."""
         try:
-            uploaded = self.any_daemon().upload(content, rate_hz=100, columns=samples.GYRO_Z)
+            uploaded = self.any_daemon().upload(content, device=device, rate_hz=100, columns=samples.GYRO_Z)
             if uploaded.status not in (200, 201):
                 return None
             recording = str(uploaded.json["id"])
@@ -121,7 +122,11 @@ class Judge(unittest.TestCase):
                 told.note_result(job, daemon.get(f"/v1/jobs/{job}/result").body)
             self.assertEqual(len(told.results[job]), 1, "a result has changed")
             self.assertEqual(sorted(fit["model"] for fit in b.items(f"/v1/fits?job={job}")), sorted(MODELS), "results are written once")
+        for job in list(told.jobs)[:STREAMS]:
             states = [event.data["state"] for event in events(b, job) if event.type == "state"]
             self.assertEqual((states.count("succeeded"), states[-1]), (1, "succeeded"), states)
+        ends = rows("SELECT job_id, count(*) FROM job_events WHERE type = 'state' AND state = 'succeeded' GROUP BY job_id")
+        self.assertLessEqual(set(told.jobs), {job for job, _ in ends})
+        self.assertEqual({count for _, count in ends}, {1}, "a job has ended once")
         keys = rows("SELECT unique_key FROM jobs WHERE state IN ('queued', 'running', 'succeeded')")
         self.assertEqual(len(keys), len({key for [key] in keys}), "one request is one job")
