@@ -283,6 +283,23 @@ class Manifests(unittest.TestCase):
             self.assertIn(container["readinessProbe"]["httpGet"]["port"], ports)
 
 
+    def test_workers_are_scaled_by_a_metric_that_there_is(self) -> None:
+        [scaler] = list(yaml.safe_load_all((DEPLOY / "kubernetes/autoscaling.yaml").read_text()))
+        manifests = list(yaml.safe_load_all((DEPLOY / "kubernetes/driftlab.yaml").read_text()))
+        deployments = {each["metadata"]["name"]: each for each in manifests if each["kind"] == "Deployment"}
+        spec = scaler["spec"]
+        target = deployments[spec["scaleTargetRef"]["name"]]
+        self.assertEqual((target["apiVersion"], target["kind"]), (spec["scaleTargetRef"]["apiVersion"], spec["scaleTargetRef"]["kind"]))
+        self.assertEqual(target["spec"]["template"]["spec"]["containers"][0]["args"], ["worker"])
+        self.assertLessEqual(spec["minReplicas"], target["spec"]["replicas"])
+        self.assertLessEqual(target["spec"]["replicas"], spec["maxReplicas"])
+        [metric] = spec["metrics"]
+        with Daemon(Path(self.enterContext(tempfile.TemporaryDirectory())) / "data") as daemon:
+            self.assertRegex(daemon.get("/metrics").text, rf"(?m)^{metric['external']['metric']['name']} \d")
+        budgets = [each["spec"]["selector"]["matchLabels"] for each in manifests if each["kind"] == "PodDisruptionBudget"]
+        self.assertCountEqual(budgets, [each["spec"]["selector"]["matchLabels"] for each in deployments.values()], "each has a budget")
+
+
 def until_result(told: Any) -> list[tuple[str, str, dict[str, Any]]]:
     seen = []
     for event in told:
