@@ -1,6 +1,7 @@
 """TLS between the daemon and its database, and a password: what sslmode asks for holds, and what fails is said in one sentence."""
 from __future__ import annotations
 
+import secrets
 import shutil
 import socket
 import subprocess
@@ -21,7 +22,7 @@ except (OSError, subprocess.CalledProcessError):
     print("SKIPPED: certificates of the test are made by the program openssl, which is not here")
     raise SystemExit(SKIPPED) from None
 
-PASSWORD = "s3cret-of-the-test"
+PASSWORD = secrets.token_hex(12)
 CURVE = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2")
 
 
