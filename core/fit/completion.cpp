@@ -26,13 +26,27 @@ class Judge {
   }
 
   /// The good sample behind `y`, whose law without it is `predicted`; sets its state and residual.
-  double judge(double y, const Predicted& predicted, std::uint8_t& state, double& magnitude) {
+  [[gnu::always_inline]] double judge(double y, const Predicted& predicted, std::uint8_t& state, double& magnitude) {
     const double error = y - predicted.mean;
-    magnitude = std::fabs(error) / std::sqrt(predicted.variance);
+    if (predicted.variance != variance_) {
+      variance_ = predicted.variance;
+      sd_ = std::sqrt(variance_);
+    }
+    magnitude = std::fabs(error) / sd_;
     state = kGoodSample;
     if (!looks_ || random_.uniform() >= chance(magnitude)) {
       return y;
     }
+    return replace(error, predicted, state, magnitude);
+  }
+
+  double draw(const Predicted& predicted) {
+    return predicted.mean + std::sqrt(law_.mixture.core * predicted.variance) * random_.normal();
+  }
+
+ private:
+  /// The good sample behind one that carries a gross error of a size that is drawn.
+  [[gnu::noinline]] double replace(double error, const Predicted& predicted, std::uint8_t& state, double magnitude) {
     const std::size_t size = law_.mixture.pick_size(magnitude, random_.uniform());
     state = static_cast<std::uint8_t>(size + 1);
     const double good = law_.mixture.core * predicted.variance;
@@ -41,11 +55,6 @@ class Judge {
     return predicted.mean + share * error + std::sqrt(share * gross) * random_.normal();
   }
 
-  double draw(const Predicted& predicted) {
-    return predicted.mean + std::sqrt(law_.mixture.core * predicted.variance) * random_.normal();
-  }
-
- private:
   [[nodiscard]] double chance(double magnitude) const {
     if (std::isnan(magnitude)) {
       return 0.0;  // numbers near the end of what a double holds: nothing can be said of the sample
@@ -62,6 +71,8 @@ class Judge {
   const CompletionLaw& law_;
   Random& random_;
   bool looks_;
+  double variance_ = -1.0;  ///< of the last sample's law, and its root
+  double sd_ = 0.0;
   std::array<double, kTable + 1> chance_{};
 };
 
@@ -70,6 +81,8 @@ void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& ran
            const RunControl& control) {
   const std::size_t samples = arrays.recorded.size();
   const Chain<N, Quantized> chain(law, samples);
+  const double* const recorded = arrays.recorded.data();
+  const std::uint8_t* const states = arrays.state.data();
   const std::size_t blocks = (samples + kBlock - 1) / kBlock;
   std::vector<Information<N>> at_end(blocks);  // information in samples after the block
   Information<N> information;
@@ -79,7 +92,7 @@ void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& ran
     }
     at_end[block] = information;
     for (std::size_t t = std::min(samples, (block + 1) * kBlock); t-- > block * kBlock && block > 0;) {
-      chain.back(information, arrays.recorded[t] - law.pivot, arrays.state[t]);
+      chain.back(information, recorded[t] - law.pivot, states[t]);
     }
   }
   Past<N, Quantized> past(chain);
@@ -96,21 +109,37 @@ void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& ran
       later[t - first] = information;
       chain.back(information, arrays.recorded[t] - law.pivot, arrays.state[t]);
     }
-    for (std::size_t t = first; t < last; ++t) {
-      const Predicted predicted = past.predict(later[t - first]);
-      double sample = 0.0;
+    const auto see = [&](std::size_t t, const Predicted& predicted) {
       double magnitude = 0.0;
-      if (arrays.state[t] == kAbsentSample) {
-        sample = judge.draw(predicted);
-      } else {
-        sample = judge.judge(arrays.recorded[t] - law.pivot, predicted, arrays.state[t], magnitude);
-        histogram.add(magnitude);
-      }
-      arrays.completed[t] = arrays.state[t] == kGoodSample ? arrays.recorded[t] : sample + law.pivot;
+      std::uint8_t state = kGoodSample;
+      const double sample = judge.judge(recorded[t] - law.pivot, predicted, state, magnitude);
+      arrays.state[t] = state;
+      histogram.add(magnitude);
+      arrays.completed[t] = state == kGoodSample ? recorded[t] : sample + law.pivot;
       if (!arrays.residual.empty()) {
         arrays.residual[t] = static_cast<float>(magnitude);
       }
-      past.advance(sample);
+      return sample;
+    };
+    for (std::size_t t = first; t < last;) {
+      t += past.run(
+          later.data() + (t - first), last - t, [&](std::size_t i) { return states[t + i] == kAbsentSample; },
+          [&](std::size_t i, const Predicted& predicted) { return see(t + i, predicted); });
+      if (t == last) {
+        break;
+      }
+      const Predicted predicted = past.predict(later[t - first]);
+      if (states[t] == kAbsentSample) {
+        const double sample = judge.draw(predicted);
+        arrays.completed[t] = sample + law.pivot;
+        if (!arrays.residual.empty()) {
+          arrays.residual[t] = 0.0F;
+        }
+        past.advance(sample);
+      } else {
+        past.advance(see(t, predicted));
+      }
+      ++t;
     }
   }
 }

@@ -51,6 +51,57 @@ class Past {
     return law;
   }
 
+  /// What predict() and advance() do for `count` samples, as long as the gain has settled, the weights hold and `see`,
+  /// which is given the number of the sample and its law and returns the completed sample, is not told to stop by
+  /// `stop`. Returns how many samples it took. The state stays in registers, which takes a third of the time.
+  template <class Stop, class See>
+  std::size_t run(const Information<N>* later, std::size_t count, Stop&& stop, See&& see) {
+    if (!settled_) {
+      return 0;
+    }
+    const Vector<N> transition = chain_.transition();
+    const Vector<N> gain = gain_;
+    const Vector<N> weight = weight_;
+    Vector<N> lowest{};
+    Vector<N> highest{};
+    for (int k = 0; k < N; ++k) {
+      lowest[k] = weighed_[k] - kSame * weighed_[k];
+      highest[k] = weighed_[k] + kSame * weighed_[k];
+    }
+    Vector<N> mean = mean_;
+    std::size_t i = 0;
+    for (; i < count && !stop(i); ++i) {
+      const Information<N>& ahead = later[i];
+      bool same = true;
+      for (int k = 0; k < N; ++k) {
+        same = same && ahead.precision[k][k] >= lowest[k] && ahead.precision[k][k] <= highest[k];
+      }
+      if (!same) {
+        break;
+      }
+      double level = 0.0;
+      Vector<N> next{};
+      for (int k = 0; k < N; ++k) {
+        level += Chain<N, Quantized>::sight(k) * mean[k];
+        next[k] = transition[k] * mean[k];
+      }
+      double expected = level;
+      for (int r = 0; r < N; ++r) {
+        double seen = 0.0;
+        for (int c = 0; c < N; ++c) {
+          seen += ahead.precision[r][c] * next[c];
+        }
+        expected += weight[r] * (ahead.shift[r] - seen);
+      }
+      const double innovation = see(i, Predicted{expected, spread_}) - level;
+      for (int k = 0; k < N; ++k) {
+        mean[k] = next[k] + gain[k] * innovation;
+      }
+    }
+    mean_ = mean;
+    return i;
+  }
+
   /// Takes the completed sample; predict() must have been called for it.
   void advance(double sample) {
     const double innovation = sample - level_;

@@ -8,7 +8,6 @@
 namespace driftlab {
 namespace {
 
-constexpr double kPerUnit = static_cast<double>(ResidualHistogram::kFine) / ResidualHistogram::kFineEnd;
 constexpr double kPerOctave = 4.0;
 
 /// Density at z up to a constant.

@@ -19,12 +19,15 @@ class ResidualHistogram {
   static constexpr std::size_t kFine = 256;
   static constexpr std::size_t kBins = kFine + 200;
   static constexpr double kFineEnd = 8.0;
+  static constexpr double kPerUnit = static_cast<double>(kFine) / kFineEnd;
 
   void clear() { counts_.fill(0); }
   /// `magnitude` = |z|. What is no number is not counted: a sample near the end of what a double holds may be
   /// infinitely far from the model, in infinite units.
   void add(double magnitude) {
-    if (!std::isnan(magnitude)) {
+    if (magnitude < kFineEnd) {
+      ++counts_[static_cast<std::size_t>(magnitude * kPerUnit)];
+    } else if (!std::isnan(magnitude)) {
       ++counts_[bin_of(magnitude)];
     }
   }
