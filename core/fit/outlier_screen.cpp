@@ -1,6 +1,7 @@
 #include "core/fit/outlier_screen.hpp"
 
 #include "core/signal/median.hpp"
+#include "core/variance/window_medians.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@ constexpr double kPatchLimit = 5.5;
 constexpr double kClip = 5.0;
 constexpr std::size_t kLooks = 2000;  ///< places at which predictors are compared
 constexpr std::size_t kPoll = 1U << 18U;
+constexpr std::size_t kWindowsToPoll = 4096;
 
 double median_of(std::vector<double>& values) { return values.empty() ? 0.0 : take_median(values); }
 
@@ -77,23 +79,43 @@ class Predictor {
   std::vector<double> scratch_;
 };
 
+/// Medians of the samples within `reach` of every `stride`-th sample and of the last one, cut off at the ends.
+std::vector<double> strided_medians(std::span<const double> samples, std::size_t reach, std::size_t stride,
+                                    const RunControl& control) {
+  std::vector<double> medians((samples.size() + stride - 1) / stride + 1);
+  const std::size_t whole_from = (reach + stride - 1) / stride;
+  const std::size_t whole_to = samples.size() > reach ? (samples.size() - reach - 1) / stride + 1 : 0;
+  WindowMedians windows(2 * reach + 1);
+  for (std::size_t k = whole_from; k < whole_to && !control.stop.stop_requested(); k += kWindowsToPoll) {
+    windows.find(samples.data() + k * stride - reach, stride, std::min(kWindowsToPoll, whole_to - k),
+                 medians.data() + k);
+  }
+  Predictor predictor(samples);
+  for (std::size_t k = 0; k < medians.size(); ++k) {
+    if (k < whole_from || k >= whole_to || k * stride >= samples.size()) {
+      medians[k] = predictor.window(std::min(k * stride, samples.size() - 1), reach);
+    }
+  }
+  return medians;
+}
+
 /// Residuals from running medians of 2 reach + 1 samples, taken at every `stride`-th sample.
 std::vector<double> median_residuals(std::span<const double> samples, std::size_t reach, const RunControl& control) {
   const std::size_t stride = std::max<std::size_t>(1, reach / 2);
-  Predictor predictor(samples);
   std::vector<double> residual(samples.size());
-  double left = predictor.window(0, reach);
+  const std::vector<double> medians = strided_medians(samples, reach, stride, control);
+  std::size_t knot = 0;
   for (std::size_t first = 0; first < samples.size(); first += stride) {
     if (first % kPoll < stride && control.stop.stop_requested()) {
       break;
     }
     const std::size_t next = std::min(first + stride, samples.size() - 1);
-    const double right = predictor.window(next, reach);
+    const double left = medians[knot];
+    const double right = medians[++knot];
     for (std::size_t t = first; t < std::min(first + stride, samples.size()); ++t) {
       const double part = next > first ? static_cast<double>(t - first) / static_cast<double>(next - first) : 0.0;
       residual[t] = samples[t] - (left + part * (right - left));
     }
-    left = right;
   }
   return residual;
 }

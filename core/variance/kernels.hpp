@@ -5,6 +5,7 @@
 /// additions is fixed, without fused multiply-add, so every version gives the same bits. The portable version serves
 /// other processors and compilers.
 #include <cstddef>
+#include <cstdint>
 
 namespace driftlab {
 
@@ -29,7 +30,13 @@ struct Kernels {
   /// out[i] = (a[i] - 2 b[i] + c[i])^2 scale.
   void (*square_second_differences)(const double* a, const double* b, const double* c, std::size_t count, double scale,
                                     double* out);
+  /// For each of the pairs of rows one after the other, lane by lane: the lower value to the first row, the other to
+  /// the second. A row is kWindowsAtOnce values.
+  void (*exchange)(double* rows, const std::uint16_t* pair, std::size_t pairs);
 };
+
+/// Lanes of `exchange`.
+inline constexpr std::size_t kWindowsAtOnce = 8;
 
 /// The version for this processor; chosen once.
 [[nodiscard]] const Kernels& kernels();

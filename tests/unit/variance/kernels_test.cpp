@@ -58,6 +58,12 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
     portable.square_second_differences(x.data() + 20, x.data() + 10, x.data(), count, 0.3, b.data());
     EXPECT_EQ(a, b);
   }
+  const std::vector<std::uint16_t> pairs{0, 3, 1, 2, 0, 1, 2, 3, 1, 2};
+  std::vector<double> a(x.begin(), x.begin() + 4 * kWindowsAtOnce);
+  std::vector<double> b = a;
+  chosen.exchange(a.data(), pairs.data(), pairs.size() / 2);
+  portable.exchange(b.data(), pairs.data(), pairs.size() / 2);
+  EXPECT_EQ(a, b);
 }
 
 }  // namespace
