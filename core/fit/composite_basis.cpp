@@ -17,12 +17,22 @@ constexpr double kLineWidth = 0.15;
 
 double safe_log(double x) { return x > 0.0 ? std::max(kNothing, std::log(x)) : kNothing; }
 
+/// ln of the density at frequency 0: the limit where the kind knows it.
+double log_at_zero(const Process& process, double dt_s) {
+  if (const auto low = process.low_frequency(dt_s)) {
+    return safe_log(low->density);
+  }
+  const std::optional<double> density = process.spectral_density(kZero / dt_s, dt_s);
+  return density ? safe_log(*density) : kNothing;
+}
+
 }  // namespace
 
 CompositeBasis::CompositeBasis(std::shared_ptr<const SpectralTable> table, std::vector<CompositeKind> kinds,
                                double dt_s)
     : table_(std::move(table)), kinds_(std::move(kinds)), dt_s_(dt_s) {
   const Eigen::Index rows = table_->scales() + 1;
+  half_.assign(table_->half().begin(), table_->half().end());
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     const CompositeKind& kind = kinds_[k];
     const std::size_t nodes = kind.shapes() == 0 ? 1 : kind.nodes;
@@ -83,17 +93,14 @@ void CompositeBasis::evaluate(const Component& component, Eigen::VectorXd& out) 
   const Component unit{component.kind, 0.0, component.log_shape};
   const Process process = this->process(unit);
   out.resize(scales + 1);
-  const std::optional<double> at_zero = process.spectral_density(kZero / dt_s_, dt_s_);
-  out(scales) = at_zero ? safe_log(*at_zero) : kNothing;
-  if (process.kind->haar_variance != nullptr) {
-    for (Eigen::Index j = 0; j < scales; ++j) {
-      out(j) = safe_log(process.haar_variance(static_cast<double>(table_->half()[static_cast<std::size_t>(j)]), dt_s_));
-    }
-    return;
+  out(scales) = log_at_zero(process, dt_s_);
+  if (process.kind->haar_curve != nullptr) {
+    process.haar_curve(half_, dt_s_, std::span(out.data(), half_.size()));
+  } else {
+    out.head(scales) = table_->variance(density(unit));
   }
-  const Eigen::VectorXd nu = table_->variance(density(unit));
   for (Eigen::Index j = 0; j < scales; ++j) {
-    out(j) = safe_log(nu(j));
+    out(j) = safe_log(out(j));
   }
 }
 
@@ -101,7 +108,20 @@ void CompositeBasis::differentiate(const Component& component, LogColumn& out) c
   const CompositeKind& kind = kinds_[component.kind];
   const Eigen::Index scales = table_->scales();
   const Process process = this->process({component.kind, 0.0, component.log_shape});
-  const bool closed = kind.kind->haar_gradient != nullptr;
+  const bool closed = kind.kind->haar_curve != nullptr;
+  const std::size_t parameters = process.parameters.size();
+  std::vector<double> gradient;
+  if (closed) {
+    gradient.resize(half_.size() * parameters);
+    out.value.resize(scales + 1);
+    process.haar_curve(half_, dt_s_, std::span(out.value.data(), half_.size()), gradient);
+    for (Eigen::Index j = 0; j < scales; ++j) {
+      out.value(j) = safe_log(out.value(j));
+    }
+    out.value(scales) = log_at_zero(process, dt_s_);
+  } else {
+    evaluate(component, out.value);
+  }
   for (std::size_t s = 0; s < kind.shapes(); ++s) {
     Component beside = component;
     const double step = component.log_shape[s] + kStep > range(component, s).second ? -kStep : kStep;
@@ -112,15 +132,11 @@ void CompositeBasis::differentiate(const Component& component, LogColumn& out) c
       continue;
     }
     out.slope[s].resize(scales + 1);
-    const std::optional<double> at_zero = this->process(beside).spectral_density(kZero / dt_s_, dt_s_);
-    const double level = at_zero ? safe_log(*at_zero) - component.log_square : kNothing;
+    const double level = log_at_zero(this->process({component.kind, 0.0, beside.log_shape}), dt_s_);
     out.slope[s](scales) = (level - out.value(scales)) / step;
-  }
-  std::array<double, 1 + kMostShapes> gradient{};
-  for (Eigen::Index j = 0; closed && j < scales; ++j) {
-    process.haar_gradient(static_cast<double>(table_->half()[static_cast<std::size_t>(j)]), dt_s_, gradient);
-    for (std::size_t s = 0; s < kind.shapes(); ++s) {
-      out.slope[s](j) = gradient[s + 1] * process.parameters[s + 1] * std::exp(-out.value(j));
+    for (Eigen::Index j = 0; j < scales; ++j) {
+      out.slope[s](j) = gradient[static_cast<std::size_t>(j) * parameters + s + 1] * process.parameters[s + 1] *
+                        std::exp(-out.value(j));
     }
   }
 }
@@ -161,9 +177,10 @@ void CompositeBasis::column(const Component& component, bool with_slopes, LogCol
     return;
   }
   if (table.slope.size() == 0) {
-    evaluate(component, out.value);
     if (with_slopes) {
       differentiate(component, out);
+    } else {
+      evaluate(component, out.value);
     }
     return;
   }

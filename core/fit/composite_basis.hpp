@@ -85,12 +85,13 @@ class CompositeBasis {
     Eigen::MatrixXd slope;
   };
   void evaluate(const Component& component, Eigen::VectorXd& out) const;
-  /// Computes the derivatives that belong to out.value.
+  /// The same with the derivatives.
   void differentiate(const Component& component, LogColumn& out) const;
 
   std::shared_ptr<const SpectralTable> table_;
   std::vector<CompositeKind> kinds_;
   double dt_s_;
+  std::vector<double> half_;
   std::vector<Table> tables_;
 };
 

@@ -24,6 +24,8 @@ struct ShapeSlot {
   double log_high = 0.0;
 };
 
+std::span<double> entries(Eigen::VectorXd& vector) { return {vector.data(), static_cast<std::size_t>(vector.size())}; }
+
 class Search {
  public:
   Search(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights)
@@ -62,10 +64,7 @@ class Search {
   [[nodiscard]] Eigen::VectorXd column(std::size_t k, const Values& p) const {
     const ProcessKind* kind = structure_.kinds[k];
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
-    for (Eigen::Index j = 0; j < raw.size(); ++j) {
-      raw(j) = kind->haar_variance({p.data(), kind->parameters.size()}, moments_.half[static_cast<std::size_t>(j)],
-                                   moments_.dt_at(static_cast<std::size_t>(j)));
-    }
+    curve_of(*kind, {p.data(), kind->parameters.size()}, moments_, entries(raw));
     return whitening_ * raw;
   }
 
@@ -73,12 +72,12 @@ class Search {
   [[nodiscard]] Eigen::VectorXd column_slope(std::size_t s, const Eigen::VectorXd& log_shapes) const {
     const ProcessKind* kind = structure_.kinds[slots_[s].process];
     const Values p = values(first_slot(s), log_shapes);
+    const std::size_t count = kind->parameters.size();
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
-    Values gradient{};
-    for (Eigen::Index j = 0; j < raw.size(); ++j) {
-      const auto row = static_cast<std::size_t>(j);
-      kind->haar_gradient({p.data(), kind->parameters.size()}, moments_.half[row], moments_.dt_at(row), gradient);
-      raw(j) = gradient[slots_[s].parameter] * p[slots_[s].parameter];
+    std::vector<double> gradient(moments_.half.size() * count);
+    curve_of(*kind, {p.data(), count}, moments_, entries(raw), gradient);
+    for (std::size_t j = 0; j < moments_.half.size(); ++j) {
+      raw(static_cast<Eigen::Index>(j)) = gradient[j * count + slots_[s].parameter] * p[slots_[s].parameter];
     }
     return whitening_ * raw;
   }
@@ -346,6 +345,21 @@ Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& mo
     nu(j) = haar_variance(model, moments.half[row], moments.dt_at(row));
   }
   return nu;
+}
+
+void curve_of(const ProcessKind& kind, std::span<const double> parameters, const WaveletMoments& moments,
+              std::span<double> variance, std::span<double> gradient) {
+  const std::size_t count = parameters.size();
+  const std::span<const double> half(moments.half);
+  for (std::size_t from = 0; from < half.size();) {  // rows of one sample interval together
+    std::size_t to = from + 1;
+    while (to < half.size() && moments.dt_at(to) == moments.dt_at(from)) {
+      ++to;
+    }
+    kind.haar_curve(parameters, half.subspan(from, to - from), moments.dt_at(from), variance.subspan(from, to - from),
+                    gradient.empty() ? gradient : gradient.subspan(from * count, (to - from) * count));
+    from = to;
+  }
 }
 
 GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights) {

@@ -53,6 +53,11 @@ struct GmwmSolution {
 /// Puts processes of one kind into a fixed order: the largest shape (fastest) first, vanished ones last.
 void sort_repeats(Model& model);
 
+/// Wavelet variances of a process of these parameters at every row, and unless `gradient` is empty their derivatives by
+/// each parameter, rows x parameters, row by row.
+void curve_of(const ProcessKind& kind, std::span<const double> parameters, const WaveletMoments& moments,
+              std::span<double> variance, std::span<double> gradient = {});
+
 /// nu(theta) of a model at every scale.
 [[nodiscard]] Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& model);
 

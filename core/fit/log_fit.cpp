@@ -71,17 +71,24 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
   if (jacobian != nullptr) {
     slope.resize(count, static_cast<Eigen::Index>(coordinates_.size()));
   }
-  std::array<double, kMostParameters> gradient{};
-  Eigen::MatrixXd part(count, static_cast<Eigen::Index>(model.size()));
+  const std::size_t rows = moments_.half.size();
+  std::vector<double> shares(rows * model.size());
+  std::vector<double> gradients(jacobian != nullptr ? rows * coordinates_.size() : 0);
+  std::vector<std::span<const double>> gradient(model.size());
+  std::size_t taken = 0;
+  for (std::size_t p = 0; p < model.size(); ++p) {
+    const std::size_t wanted =
+        jacobian != nullptr && model[p].kind->has_shape() ? rows * model[p].parameters.size() : 0;
+    const std::span<double> slopes = std::span(gradients).subspan(taken, wanted);
+    curve_of(*model[p].kind, model[p].parameters, moments_, std::span(shares).subspan(p * rows, rows), slopes);
+    gradient[p] = slopes;
+    taken += wanted;
+  }
   for (Eigen::Index j = 0; j < count; ++j) {
     const auto row = static_cast<std::size_t>(used[static_cast<std::size_t>(j)]);
-    const double half = moments_.half[row];
-    const double dt_s = moments_.dt_at(row);
     double sum = 0.0;
     for (std::size_t p = 0; p < model.size(); ++p) {
-      const double share = model[p].haar_variance(half, dt_s);
-      part(j, static_cast<Eigen::Index>(p)) = share;
-      sum += share;
+      sum += shares[p * rows + row];
     }
     raw(j) = curve_->curve.log_variance(j) - std::log(sum);
     if (jacobian == nullptr) {
@@ -92,10 +99,10 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
       const double at = coordinates(static_cast<Eigen::Index>(k));
       double value = 0.0;
       if (c.parameter == 0) {
-        value = part(j, static_cast<Eigen::Index>(c.process)) / sum;
+        value = shares[c.process * rows + row] / sum;
       } else {
-        model[c.process].haar_gradient(half, dt_s, gradient);
-        value = gradient[c.parameter] * model[c.process].parameters[c.parameter] / sum;
+        const std::size_t parameters = model[c.process].parameters.size();
+        value = gradient[c.process][row * parameters + c.parameter] * model[c.process].parameters[c.parameter] / sum;
       }
       slope(j, static_cast<Eigen::Index>(k)) = at >= c.low && at <= c.high ? -value : 0.0;
     }

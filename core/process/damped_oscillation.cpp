@@ -74,6 +74,31 @@ DampedOscillation::Slope DampedOscillation::haar_slope(double m) const {
   return {(weight_ * slope * Complex(damping_, root_)).real(), -2.0 * damping_ * damping_ * by_damping};
 }
 
+DampedOscillation::Shared DampedOscillation::shared() const {
+  if (fall_ > kWhite) {
+    return {};
+  }
+  const Complex s = sinh_of(0.5 * x_);
+  return {sinh_minus(x_), 0.125 / (s * s), std::cosh(0.5 * x_) / s};
+}
+
+/// As unit_haar and haar_slope have it.
+double DampedOscillation::haar_at(const Shared& shared, double m, Slope& slope) const {
+  if (fall_ > kWhite) {
+    return 0.5 / m;
+  }
+  const Complex y = m * x_;
+  const Complex t = expm1_of(-y);
+  const bool small = std::norm(y) < 0.25;
+  const Complex bump = small ? haar_bump(y) : 2.0 * (y + t) - t * t;
+  const double inverse = 1.0 / m;
+  const Complex value = shared.scale * ((2.0 * inverse) * shared.minus + (inverse * inverse) * bump);
+  const Complex by_x = 0.5 * inverse + (2.0 * inverse) * (t * t * shared.scale) - value * shared.cotangent;
+  const double by_damping = (weight_slope() * value + weight_ * by_x * rate_slope()).real();
+  slope = {(weight_ * by_x * Complex(damping_, root_)).real(), -2.0 * damping_ * damping_ * by_damping};
+  return (weight_ * value).real();
+}
+
 double DampedOscillation::density(double f) const {
   if (fall_ > kWhite) {
     return 1.0;

@@ -11,6 +11,7 @@
 #include "core/process/state_space.hpp"
 
 #include <complex>
+#include <cstddef>
 #include <span>
 
 namespace driftlab {
@@ -29,6 +30,16 @@ class DampedOscillation {
   /// Re[C F(x)], F(x) = [2m (sinh x - x) + p(mx)] / (8 m^2 sinh^2(x/2)), p(y) = 2y - 3 + 4 e^-y - e^-2y.
   [[nodiscard]] double haar_variance(double m) const;
   [[nodiscard]] Slope haar_slope(double m) const;
+  /// Both for many m: `take(j, variance, slope)` at each. What they share is computed once.
+  template <class Take>
+  void each_haar(std::span<const double> half, Take&& take) const {
+    const Shared shared = this->shared();
+    for (std::size_t j = 0; j < half.size(); ++j) {
+      Slope slope;
+      const double variance = haar_at(shared, half[j], slope);
+      take(j, variance, slope);
+    }
+  }
   /// sum_h gamma(h) e^(-2 pi i f h), f in cycles per sample: its integral over (-1/2, 1/2) is 1. Aliases are in it.
   [[nodiscard]] double density(double f) const;
   /// The same at f = 0, Re[C coth(x/2)], and its derivatives.
@@ -48,6 +59,14 @@ class DampedOscillation {
 
  private:
   [[nodiscard]] std::complex<double> haar_cross(double mi, double mj, double h) const;
+  /// Of all Haar variances: sinh x - x, 1/(8 sinh^2(x/2)), coth(x/2).
+  struct Shared {
+    std::complex<double> minus;
+    std::complex<double> scale;
+    std::complex<double> cotangent;
+  };
+  [[nodiscard]] Shared shared() const;
+  [[nodiscard]] double haar_at(const Shared& shared, double m, Slope& slope) const;
   [[nodiscard]] std::complex<double> weight_slope() const;
   [[nodiscard]] std::complex<double> rate_slope() const;
 

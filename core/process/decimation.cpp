@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace driftlab {
 namespace {
+
+double fourth_power(double x) { return (x * x) * (x * x); }
 
 /// The quintic B-spline and its derivative, at u >= 0.
 double spline(double u) {
@@ -16,7 +19,7 @@ double spline(double u) {
     return 0.55 + u * u * (-0.5 + u * u * (0.25 - u / 12.0));
   }
   return u < 2.0   ? 0.425 + u * (0.625 + u * (-1.75 + u * (1.25 + u * (-0.375 + u / 24.0))))
-         : u < 3.0 ? std::pow(3.0 - u, 5) / 120.0
+         : u < 3.0 ? fourth_power(3.0 - u) * (3.0 - u) / 120.0
                    : 0.0;
 }
 double spline_slope(double u) {
@@ -24,7 +27,7 @@ double spline_slope(double u) {
     return u * (-1.0 + u * u * (1.0 - 5.0 * u / 12.0));
   }
   return u < 2.0   ? 0.625 + u * (-3.5 + u * (3.75 + u * (-1.5 + 5.0 * u / 24.0)))
-         : u < 3.0 ? -std::pow(3.0 - u, 4) / 24.0
+         : u < 3.0 ? -fourth_power(3.0 - u) / 24.0
                    : 0.0;
 }
 
@@ -71,6 +74,28 @@ double haar_sum(const std::vector<double>& covariance, double mi, double mj, dou
   return sum;
 }
 
+/// The same for one filter of half length m, whose own autocovariance is (2m - 3k)/4m^2 up to lag m and (k - 2m)/4m^2
+/// from there to 2m.
+double haar_sum_at(const std::vector<double>& covariance, double m) {
+  double sum = 0.5 * m * covariance[0];
+  for (std::size_t h = 1; h < covariance.size(); ++h) {
+    const auto lag = static_cast<double>(h);
+    sum += covariance[h] * (lag < m ? m - 1.5 * lag : std::min(0.0, 0.5 * lag - m));
+  }
+  return sum / (m * m);
+}
+
+/// Sum over both signs of the values, and of the values times the lags.
+std::pair<double, double> moments_of(const std::vector<double>& covariance) {
+  double sum = covariance[0];
+  double first = 0.0;
+  for (std::size_t h = 1; h < covariance.size(); ++h) {
+    sum += 2.0 * covariance[h];
+    first += 2.0 * static_cast<double>(h) * covariance[h];
+  }
+  return {sum, first};
+}
+
 /// What the noise of one sample interval gives to the present and the later samples: a column for each of the points at
 /// which three-point Gauss-Legendre rules between the knots of the kernel take the interval. Products of two kernels
 /// are of degree four there, so the rules are exact.
@@ -114,6 +139,24 @@ void Decimation::haar_gradient(double m, double dt_s, std::span<double> out) con
   const Lags lags(samples);
   out[0] = 2.0 * n / dt_s * haar_sum(lags.covariance, m, m, 0.0);
   out[1] = n * n / dt_s * haar_sum(lags.slope, m, m, 0.0);
+}
+
+void Decimation::haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                            std::span<double> gradient) const {
+  const Lags lags(samples);
+  const auto [sum, first] = moments_of(lags.covariance);
+  const auto [slope_sum, slope_first] = moments_of(lags.slope);
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    const double m = half[j];
+    const bool line = m + 1.0 >= static_cast<double>(lags.covariance.size());
+    const double unit = line ? (0.5 * sum - 0.75 * first / m) / m : haar_sum_at(lags.covariance, m);
+    variance[j] = n * n / dt_s * unit;
+    if (!gradient.empty()) {
+      gradient[2 * j] = 2.0 * n / dt_s * unit;
+      gradient[2 * j + 1] =
+          n * n / dt_s * (line ? (0.5 * slope_sum - 0.75 * slope_first / m) / m : haar_sum_at(lags.slope, m));
+    }
+  }
 }
 
 std::optional<double> Decimation::spectral_density(double f_hz, double dt_s) const {

@@ -41,6 +41,10 @@ struct Decimation {
   /// Sum of the autocovariances times the Haar filter's, 6 m terms.
   [[nodiscard]] double haar_variance(double m, double dt_s) const;
   void haar_gradient(double m, double dt_s, std::span<double> out) const;
+  /// Both for many m: the autocovariances are computed once, and where m is 3 `samples` and more, the filter's own is a
+  /// straight line over all of them.
+  void haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                  std::span<double> gradient) const;
   [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
   /// Within a tenth up to 0.103/(m dt).
   [[nodiscard]] LowFrequencyDensity low_frequency(double dt_s) const;

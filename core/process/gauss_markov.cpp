@@ -56,6 +56,37 @@ void GaussMarkov::haar_gradient(double m, double dt_s, std::span<double> out) co
   out[1] = sigma * sigma * unit.variance * slope * dt_s;
 }
 
+void GaussMarkov::haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                             std::span<double> gradient) const {
+  const double x = beta * dt_s;
+  const bool white = x > kWhite;
+  const double square = sigma * sigma;
+  const double s = white ? 1.0 : sinh_of(0.5 * x);
+  const double minus = white ? 0.0 : sinh_minus(x);
+  const double cotangent = std::sqrt(1.0 + s * s) / s;
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    const double m = half[j];
+    if (white) {
+      variance[j] = square * (0.5 / m);
+      if (!gradient.empty()) {
+        gradient[2 * j] = 2.0 * sigma * (0.5 / m);
+        gradient[2 * j + 1] = 0.0;
+      }
+      continue;
+    }
+    const double y = m * x;
+    const bool small = y < 0.5;
+    const double t = small && gradient.empty() ? 0.0 : std::expm1(-y);
+    const double numerator = 2.0 * m * minus + (small ? haar_bump(y) : 2.0 * (y + t) - t * t);
+    const double unit = numerator / (8.0 * m * m * s * s);
+    variance[j] = square * unit;
+    if (!gradient.empty()) {
+      gradient[2 * j] = 2.0 * sigma * unit;
+      gradient[2 * j + 1] = square * unit * ((4.0 * m * s * s + 2.0 * m * t * t) / numerator - cotangent) * dt_s;
+    }
+  }
+}
+
 std::optional<double> GaussMarkov::spectral_density(double f_hz, double dt_s) const {
   const double x = beta * dt_s;
   const double phi = std::exp(-x);

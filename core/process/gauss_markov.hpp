@@ -33,6 +33,8 @@ struct GaussMarkov {
   /// sigma^2 [2m (sinh x - x) + p(mx)] / (8 m^2 sinh^2(x/2)), p(y) = 2y - 3 + 4 e^-y - e^-2y: a sum of positive terms.
   [[nodiscard]] double haar_variance(double m, double dt_s) const;
   void haar_gradient(double m, double dt_s, std::span<double> out) const;
+  void haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                  std::span<double> gradient) const;
   /// dt sigma^2 (1 - phi^2) / (1 - 2 phi cos(2 pi f dt) + phi^2).
   [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
   /// dt sigma^2 coth(x/2), about 2 sigma^2/beta, within a tenth up to a third of the corner beta/(2 pi).

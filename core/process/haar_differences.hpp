@@ -29,7 +29,7 @@ struct ScaledPhase {
 [[nodiscard]] inline ScaledPhase scaled_phase(double frequency, double m) {
   const double high = frequency * m;
   const double low = std::fma(frequency, m, -high);
-  const double turn = std::remainder(high, 2.0) + low;
+  const double turn = (high - 2.0 * std::nearbyint(0.5 * high)) + low;  // the remainder by 2, exact as well
   return {std::sin(std::numbers::pi * turn), std::cos(std::numbers::pi * turn)};
 }
 

@@ -36,6 +36,10 @@ struct ProcessKind {
 
   double (*haar_variance)(std::span<const double> p, double half, double dt_s) = nullptr;
   void (*haar_gradient)(std::span<const double> p, double half, double dt_s, std::span<double> out) = nullptr;
+  /// Both at once for many half lengths, in a fraction of the time where the kind knows what they share. `gradient` is
+  /// empty, or holds the derivatives by each parameter, half length by half length.
+  void (*haar_curve)(std::span<const double> p, std::span<const double> half, double dt_s, std::span<double> variance,
+                     std::span<double> gradient) = nullptr;
   std::optional<double> (*spectral_density)(std::span<const double> p, double f_hz, double dt_s) = nullptr;
   std::optional<double> (*autocovariance)(std::span<const double> p, double lag, double dt_s) = nullptr;
   double (*variogram)(std::span<const double> p, double lag, double dt_s) = nullptr;
@@ -104,6 +108,12 @@ struct Process {
   /// Derivatives of haar_variance by each parameter.
   void haar_gradient(double half, double dt_s, std::span<double> out) const {
     kind->haar_gradient(parameters, half, dt_s, out);
+  }
+  /// haar_variance at each of `half` and, unless `gradient` is empty, haar_gradient there: half.size() x
+  /// parameters.size(), a half length after the other.
+  void haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                  std::span<double> gradient = {}) const {
+    kind->haar_curve(parameters, half, dt_s, variance, gradient);
   }
   /// Two-sided density [unit^2 s] of the sampled process at |f| <= 1/(2 dt); its integral over both signs is the
   /// variance.

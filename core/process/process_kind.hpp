@@ -75,6 +75,20 @@ template <class T>
   kind.haar_gradient = [](Values p, double half, double dt_s, std::span<double> out) {
     detail::from_values<T>(p).haar_gradient(half, dt_s, out);
   };
+  kind.haar_curve = [](Values p, std::span<const double> half, double dt_s, std::span<double> variance,
+                       std::span<double> gradient) {
+    const T process = detail::from_values<T>(p);
+    if constexpr (requires { process.haar_curve(half, dt_s, variance, gradient); }) {
+      process.haar_curve(half, dt_s, variance, gradient);  // the type knows what the half lengths share
+    } else {
+      for (std::size_t j = 0; j < half.size(); ++j) {
+        variance[j] = process.haar_variance(half[j], dt_s);
+        if (!gradient.empty()) {
+          process.haar_gradient(half[j], dt_s, gradient.subspan(j * p.size(), p.size()));
+        }
+      }
+    }
+  };
   kind.spectral_density = [](Values p, double f_hz, double dt_s) {
     return detail::from_values<T>(p).spectral_density(f_hz, dt_s);
   };

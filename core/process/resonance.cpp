@@ -44,6 +44,20 @@ void Resonance::haar_gradient(double m, double dt_s, std::span<double> out) cons
   out[2] = sigma * sigma * slope.by_quality;
 }
 
+void Resonance::haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                           std::span<double> gradient) const {
+  const double square = sigma * sigma;
+  const double turn = kTurn * dt_s;
+  unit_of(*this, dt_s).each_haar(half, [&](std::size_t j, double unit, const DampedOscillation::Slope& slope) {
+    variance[j] = square * unit;
+    if (!gradient.empty()) {
+      gradient[3 * j] = 2.0 * sigma * unit;
+      gradient[3 * j + 1] = square * slope.by_rate * turn;
+      gradient[3 * j + 2] = square * slope.by_quality;
+    }
+  });
+}
+
 std::optional<double> Resonance::spectral_density(double f_hz, double dt_s) const {
   return sigma * sigma * dt_s * unit_of(*this, dt_s).density(f_hz * dt_s);
 }

@@ -40,6 +40,8 @@ struct Resonance {
   /// Closed form (damped_oscillation.hpp).
   [[nodiscard]] double haar_variance(double m, double dt_s) const;
   void haar_gradient(double m, double dt_s, std::span<double> out) const;
+  void haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                  std::span<double> gradient) const;
   /// Of the samples: the sum over all aliases of (4 zeta sigma^2/w) / [(1 - u^2)^2 + (u/Q)^2], u the frequency over f.
   [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
   /// About 2 sigma^2/(Q w), within a tenth up to some 0.3 f where the quality is above 1.

@@ -45,6 +45,21 @@ struct Sinusoid {
     const double slope = 4.0 * m * wide.cosine - 2.0 * wide.sine * narrow.cosine / narrow.sine;
     out[1] = 0.5 * amplitude * amplitude * std::numbers::pi * dt_s * wide.sine * ratio * ratio * slope;
   }
+  void haar_curve(std::span<const double> half, double dt_s, std::span<double> variance,
+                  std::span<double> gradient) const {
+    const ScaledPhase narrow = scaled_phase(frequency_hz * dt_s, 1.0);
+    for (std::size_t j = 0; j < half.size(); ++j) {
+      const ScaledPhase wide = scaled_phase(frequency_hz * dt_s, half[j]);
+      const double ratio = wide.sine / (half[j] * narrow.sine);
+      const double unit = wide.sine * wide.sine * ratio * ratio;
+      variance[j] = 0.5 * amplitude * amplitude * unit;
+      if (!gradient.empty()) {
+        const double slope = 4.0 * half[j] * wide.cosine - 2.0 * wide.sine * narrow.cosine / narrow.sine;
+        gradient[2 * j] = amplitude * unit;
+        gradient[2 * j + 1] = 0.5 * amplitude * amplitude * std::numbers::pi * dt_s * wide.sine * ratio * ratio * slope;
+      }
+    }
+  }
   [[nodiscard]] std::optional<double> spectral_density(double /*f_hz*/, double /*dt_s*/) const { return std::nullopt; }
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const {
     return 0.5 * amplitude * amplitude * scaled_phase(2.0 * frequency_hz * dt_s, lag).cosine;

@@ -70,6 +70,32 @@ TEST_P(ProcessLaws, GradientMatchesCentralDifferences) {
   }
 }
 
+TEST_P(ProcessLaws, ACurveIsTheVarianceAndTheGradientAtEachHalfLength) {
+  std::vector<double> half;
+  for (double m = 1.0; m < 3e6; m = std::ceil(1.37 * m)) {
+    half.push_back(m);
+  }
+  const std::size_t count = kind().parameters.size();
+  for (const Process& process : examples(kind())) {
+    std::vector<double> alone(half.size());
+    std::vector<double> variance(half.size());
+    std::vector<double> gradient(half.size() * count);
+    process.haar_curve(half, kDt, alone);
+    process.haar_curve(half, kDt, variance, gradient);
+    for (std::size_t j = 0; j < half.size(); ++j) {
+      const double expected = process.haar_variance(half[j], kDt);
+      EXPECT_NEAR(alone[j], expected, 1e-10 * expected) << kind().name << " m=" << half[j];
+      EXPECT_NEAR(variance[j], expected, 1e-10 * expected) << kind().name << " m=" << half[j];
+      std::vector<double> slope(count);
+      process.haar_gradient(half[j], kDt, slope);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double scale = std::fabs(slope[k]) + expected / process.parameters[k];
+        EXPECT_NEAR(gradient[j * count + k], slope[k], 1e-9 * scale) << kind().name << " m=" << half[j] << " " << k;
+      }
+    }
+  }
+}
+
 TEST_P(ProcessLaws, HaarVarianceIsTheSecondDifferenceOfTheVariogram) {
   // E W^2 with W = (sum of m - sum of m before)/(2m) and sum_i c_i = 0 is -1/2 sum_ij c_i c_j V(i - j).
   for (const Process& process : examples(kind())) {
