@@ -1,6 +1,7 @@
 """Starts the real daemon for a test, speaks HTTP with it, and looks into its data directory."""
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
 import os
@@ -215,6 +216,14 @@ class Daemon:
             return [list(row) for row in database.execute(query, values)]
         finally:
             database.close()
+
+    def change(self, statement: str, *values: str) -> None:
+        """Changes rows behind the daemon's back; values stand for the `?` of the statement."""
+        if STORE == "postgres":
+            postgres.cluster().change(self.data, statement, *values)
+            return
+        with contextlib.closing(sqlite3.connect(self.data / "driftlab.db")) as database, database:
+            database.execute(statement, values)
 
     def database_bytes(self) -> bytes:
         """Everything that the database holds, as it lies on the disk or as a dump."""

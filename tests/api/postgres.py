@@ -111,11 +111,19 @@ class Cluster:
     def schema_of(data: Path) -> str:
         return "t" + hashlib.sha256(str(data.resolve()).encode()).hexdigest()[:20]
 
+    @staticmethod
+    def _filled(statement: str, values: tuple[str, ...]) -> str:
+        for value in values:
+            statement = statement.replace("?", "'" + value.replace("'", "''") + "'", 1)
+        return statement
+
+    def change(self, data: Path, statement: str, *values: str) -> None:
+        """Changes rows of the store of a data directory behind the daemon's back; values stand for the `?` of the statement."""
+        self.sql(f"SET search_path = {self.schema_of(data)}; {self._filled(statement, values)}")
+
     def rows(self, data: Path, query: str, *values: str) -> list[list[Any]]:
         """Rows of the store of a data directory; values stand for the `?` of the query."""
-        for value in values:
-            query = query.replace("?", "'" + value.replace("'", "''") + "'", 1)
-        found = self.sql(f"SET search_path = {self.schema_of(data)}; SELECT json_agg(found) FROM ({query}) AS found")
+        found = self.sql(f"SET search_path = {self.schema_of(data)}; SELECT json_agg(found) FROM ({self._filled(query, values)}) AS found")
         return [list(row.values()) for row in json.loads(found)] if found else []
 
     def dump(self, data: Path) -> bytes:

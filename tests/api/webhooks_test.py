@@ -6,13 +6,11 @@ import json
 import os
 import signal
 import socket
-import sqlite3
 import subprocess
 import tempfile
 import threading
 import time
 import unittest
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -293,15 +291,13 @@ class Lives(unittest.TestCase):
                 except LOST:
                     pass
                 self.assertEqual(daemon.wait(), -signal.SIGKILL)
-            with closing(sqlite3.connect(data / "driftlab.db")) as database, database:
-                self.assertEqual(database.execute("SELECT state FROM webhook_deliveries").fetchall(), [("waiting",)])
-                database.execute("UPDATE webhooks SET url = ?", (stranger.url,))
+            self.assertEqual(daemon.rows("SELECT state FROM webhook_deliveries"), [["waiting"]])
+            daemon.change("UPDATE webhooks SET url = ?", stranger.url)
             with Daemon(data, arguments=QUICK + limits) as daemon:
                 until = time.monotonic() + 60
                 why = ""
                 while not why and time.monotonic() < until:
-                    with closing(sqlite3.connect(data / "driftlab.db")) as database:
-                        [why] = database.execute("SELECT disabled_why FROM webhooks").fetchone()
+                    [[why]] = daemon.rows("SELECT disabled_why FROM webhooks")
                     time.sleep(0.05)
                 self.assertEqual(why, "1 delivery was given up; the last attempt: The row of the webhook is damaged, so that where it leads is "
                                       "not known.")
