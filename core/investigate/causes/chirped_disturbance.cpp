@@ -1,10 +1,9 @@
 /// chirped_disturbance: a sinusoid whose frequency runs evenly from f0 to f1 over the recording.
 ///
-/// Periodograms of pieces of a few seconds are added along every straight line through time and frequency. With r the
-/// mean of m unit exponentials along one, m (r - 1 - ln r) has about a unit exponential tail; the best line, if it is
-/// beyond what all of them together reach by chance, is followed coherently, over ever longer stretches
-/// (narrow_band.hpp). The place costs what there are of distinguishable ones, a frequency in 1/T and a slope in 2/T^2.
+/// How it is sought is in core/investigate/causes/chirp_search.hpp. Its place costs what there are of distinguishable
+/// ones, a frequency in 1/T and a slope in 2/T^2.
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/causes/chirp_search.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/narrow_band.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -18,185 +17,21 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr double kPiece = 4.0;  ///< [s], but no more than kMostSamples
-constexpr std::size_t kMostSamples = 512;
-/// Bounds the cost of a map, which is searched for every line through it. Chosen, not measured.
-constexpr std::size_t kMostPieces = 1500;
-constexpr double kLowest = 0.5;    ///< [Hz]: below, slow noise runs too
-constexpr double kLeastRun = 0.5;  ///< [Hz] from f0 to f1: less is a line that wanders
-
-double length_s(const FullRate& data, std::size_t r) {
-  return static_cast<double>(data.innovation[r].size()) * data.dt_s;
-}
-
-std::size_t piece_of(const FullRate& data) {
-  const auto samples = static_cast<std::size_t>(std::max(16.0, kPiece / data.dt_s));
-  return fast_length(std::min(samples, kMostSamples));
-}
-
-/// Power of each piece and frequency, in units of the mean at that frequency.
-struct Map {
-  double df_hz = 0.0;
-  double pieces = 0.0;                     ///< in the recording
-  std::vector<std::vector<double>> power;  ///< means over neighbours where there are very many
-};
-
-Map map_of(const FullRate& data, std::size_t r) {
-  const Series& e = data.innovation[r];
-  const std::size_t piece = piece_of(data);
-  Map map;
-  map.df_hz = 1.0 / (static_cast<double>(piece) * data.dt_s);
-  const std::size_t pieces = e.size() / piece;
-  const std::size_t together = pieces / kMostPieces + 1;
-  map.pieces = static_cast<double>(pieces);
-  for (std::size_t p = 0; p < pieces; ++p) {
-    const auto z = transform(e.part(p * piece, piece));
-    if (p % together == 0) {
-      map.power.emplace_back(z.size(), 0.0);
-    }
-    for (std::size_t k = 0; k < z.size(); ++k) {
-      map.power.back()[k] += std::norm(z[k]) / static_cast<double>(together);
-    }
-  }
-  for (std::size_t k = 0; !map.power.empty() && k < map.power.front().size(); ++k) {
-    double mean = 0.0;
-    for (const auto& power : map.power) {
-      mean += power[k] / static_cast<double>(map.power.size());
-    }
-    for (auto& power : map.power) {
-      power[k] = mean > 0.0 ? std::min(power[k] / mean, 20.0) : 0.0;
-    }
-  }
-  return map;
-}
-
-/// The straight line along which the maps of a scope hold most; nothing where chance would hold as much on one.
-std::optional<Sweep> coarse(const std::vector<const Map*>& maps, double seconds, const std::stop_token& stop) {
-  // In logarithms of the chance over all lines looked along. Chosen, not measured.
-  constexpr double kBeyondChance = 3.0;
-  const double df = maps.front()->df_hz;
-  const std::size_t bins = maps.front()->power.front().size();
-  const auto first = static_cast<std::size_t>(std::ceil(kLowest / df));
-  const auto run = static_cast<std::size_t>(std::ceil(kLeastRun / df));
-  double most = 0.0;
-  double cells = 0.0;
-  double pieces = 0.0;
-  for (const Map* const map : maps) {
-    cells += static_cast<double>(map->power.size());
-    pieces += map->pieces;
-  }
-  Sweep best;
-  for (std::size_t a = first; a < bins && !stop.stop_requested(); ++a) {
-    for (std::size_t b = first; b < bins; ++b) {
-      if ((a > b ? a - b : b - a) < run) {
-        continue;
-      }
-      double sum = 0.0;
-      for (const Map* const map : maps) {
-        const double per_piece =
-            (static_cast<double>(b) - static_cast<double>(a)) / static_cast<double>(map->power.size());
-        double at = static_cast<double>(a) + 0.5 * per_piece + 0.5;
-        for (const auto& power : map->power) {
-          sum += power[static_cast<std::size_t>(at)];
-          at += per_piece;
-        }
-      }
-      if (sum > most) {
-        most = sum;
-        best = {static_cast<double>(a) * df, (static_cast<double>(b) - static_cast<double>(a)) * df / seconds};
-      }
-    }
-  }
-  const double ratio = most / cells;
-  const double surprise = pieces * (ratio - 1.0 - std::log(ratio));
-  const double lines = static_cast<double>(bins) * static_cast<double>(bins);
-  return ratio > 1.0 && surprise > std::log(lines) + kBeyondChance ? std::optional(best) : std::nullopt;
-}
-
-struct Followed {
-  Sweep sweep;
-  double x = 0.0;  ///< sum of X over the recordings
-};
-
-/// The best sweep within `reach_hz` of one at either end: first incoherently over short stretches, whose frequency need
-/// not be known well, then over ever longer ones, to the whole.
-Followed follow(const FullRate& data, const std::vector<std::size_t>& scope, const Sweep& near, double reach_hz) {
-  std::vector<Beaten> beaten;
-  double longest = 0.0;
-  std::vector<double> excess;
-  const std::size_t block = std::max<std::size_t>(1, piece_of(data) / 8);
-  for (const std::size_t r : scope) {
-    beaten.push_back(beat(data, r, near, block));
-    longest = std::max(longest, length_s(data, r));
-    excess.push_back(excess_between(data, r, near.f_hz, near.at(length_s(data, r))));
-  }
-  const auto value = [&](double df, double dc, std::size_t stretch) {
-    double x = 0.0;
-    for (std::size_t k = 0; k < beaten.size(); ++k) {
-      std::complex<double> sum = 0.0;
-      double square = 0.0;
-      for (std::size_t i = 0; i < beaten[k].sums.size(); ++i) {
-        const double t = (static_cast<double>(i) + 0.5) * beaten[k].step_s;
-        sum += beaten[k].sums[i] * std::polar(1.0, -kTurn * (df * t + 0.5 * dc * t * t));
-        if ((i + 1) % stretch == 0 || i + 1 == beaten[k].sums.size()) {
-          square += std::norm(sum);
-          sum = 0.0;
-        }
-      }
-      x += 2.0 * square / std::max(1.0, beaten[k].samples) / excess[k];
-    }
-    return x;
-  };
-  double best_a = 0.0;
-  double best_b = 0.0;
-  double best = 0.0;
-  const auto look = [&](double step, int half, std::size_t stretch) {
-    const double centre_a = best_a;
-    const double centre_b = best_b;
-    best = -1.0;
-    for (int i = -half; i <= half && !data.stopped(); ++i) {
-      for (int j = -half; j <= half; ++j) {
-        const double a = centre_a + i * step;
-        const double b = centre_b + j * step;
-        const double x = value(a, (b - a) / longest, stretch);
-        if (x > best) {
-          best = x;
-          best_a = a;
-          best_b = b;
-        }
-      }
-    }
-  };
-  const double total = longest / beaten.front().step_s;
-  double reach = reach_hz;
-  for (double stretch = 32.0; stretch < 2.0 * total; stretch *= 4.0) {
-    const double step = 0.4 / (std::min(stretch, total) * beaten.front().step_s);
-    look(step, std::min(15, static_cast<int>(std::ceil(reach / step))), static_cast<std::size_t>(stretch));
-    reach = 1.2 * step;
-  }
-  const auto whole = static_cast<std::size_t>(total) + 2;
-  for (double step = 0.2 / longest; step > 0.002 / longest; step *= 0.4) {
-    look(step, 2, whole);
-  }
-  return {{near.f_hz + best_a, near.slope_hz_s + (best_b - best_a) / longest}, best};
-}
-
 Evidence describe(const FullRate& data, const std::vector<std::size_t>& scope, const Followed& followed) {
   double weight = 0.0;
   double mean = 0.0;
-  double longest = 0.0;
+  const double longest = longest_s(data, scope);
   for (const std::size_t r : scope) {
     const PhaseFit fit = fit_phases(data, r, {followed.sweep});
     const double modulus = std::abs(fit.amplitude[0]);
     weight += 1.0 / fit.variance;
     mean += std::sqrt(std::max(0.0, modulus * modulus - fit.variance)) / fit.variance;
-    longest = std::max(longest, length_s(data, r));
   }
   const double amplitude = mean / weight;
   const double sd = 1.0 / std::sqrt(weight);
-  // Of a phase a + 2 pi f t + pi c t^2 under white noise: the frequency at either end has the variance 24 / (pi^2 X
+  // Of a phase a + 2 pi f t + pi c t^2 under white noise: the frequency at either end has the variance 48 / (pi^2 X
   // T^2).
-  const double sd_f = std::sqrt(24.0 / std::max(1.0, followed.x)) / (std::numbers::pi * longest);
+  const double sd_f = std::sqrt(48.0 / std::max(1.0, followed.x)) / (std::numbers::pi * longest);
   const double f1 = followed.sweep.at(longest);
   Evidence evidence;
   evidence.members = scope;
@@ -213,42 +48,21 @@ Evidence describe(const FullRate& data, const std::vector<std::size_t>& scope, c
 }
 
 std::vector<Evidence> examine(const FullRate& data) {
-  std::vector<Map> maps;
-  for (std::size_t r = 0; r < data.members(); ++r) {
-    if (data.stopped()) {
-      return {};
-    }
-    maps.push_back(map_of(data, r));
-  }
   const auto scopes = scopes_of(data);
+  const auto chirps = chirps_of(data, scopes);
   std::vector<Evidence> found;
-  for (const auto& scope : scopes) {
-    if (data.stopped()) {
-      break;
-    }
-    // Pieces of a map: in fewer any slope fits. Chosen, not measured.
-    constexpr std::size_t kFewest = 6;
-    std::vector<const Map*> of_scope;
-    double longest = 0.0;
-    for (const std::size_t r : scope) {
-      if (maps[r].power.size() >= kFewest) {
-        of_scope.push_back(&maps[r]);
-        longest = std::max(longest, length_s(data, r));
-      }
-    }
-    const auto start = of_scope.size() == scope.size() ? coarse(of_scope, longest, data.stop) : std::nullopt;
-    if (!start) {
+  for (std::size_t s = 0; s < scopes.size() && !data.stopped(); ++s) {
+    if (!chirps[s]) {
       continue;
     }
-    const Followed followed = follow(data, scope, *start, of_scope.front()->df_hz);
-    const double band = 0.5 / data.dt_s;
-    const double places = band * longest * band * longest / 2.0;
-    const double score = -2.0 * log_tail(followed.x, static_cast<double>(scope.size())) - choice_penalty(places) -
+    // A frequency in 1/T and a slope in 2/T^2.
+    const double places = 0.5 * std::pow(0.5 / data.dt_s * longest_s(data, scopes[s]), 2.0);
+    const double score = -2.0 * log_tail(chirps[s]->x, static_cast<double>(scopes[s].size())) - choice_penalty(places) -
                          choice_penalty(static_cast<double>(scopes.size())) - 3.0;
     if (score < 4.0) {
       continue;
     }
-    Evidence evidence = describe(data, scope, followed);
+    Evidence evidence = describe(data, scopes[s], *chirps[s]);
     evidence.score = score;
     found.push_back(std::move(evidence));
   }
@@ -267,44 +81,47 @@ double whole_length_s(const FullRate& part, std::size_t r) {
 
 /// A half of the recording holds the first or the second half of the run.
 Evidence find_again(const FullRate& part, const Evidence& found) {
-  double seconds = 0.0;
+  const double seconds = longest_s(part, found.members);
   double whole = 0.0;
   for (const std::size_t r : found.members) {
-    seconds = std::max(seconds, length_s(part, r));
     whole = std::max(whole, whole_length_s(part, r));
   }
   const Sweep sweep = sweep_of(found, whole);
-  const Followed first = follow(part, found.members, sweep, 2.0 / seconds);
-  const Followed second = follow(part, found.members, {sweep.at(whole - seconds), sweep.slope_hz_s}, 2.0 / seconds);
+  const Followed first = follow_chirp(part, found.members, sweep, 2.0 / seconds);
+  const Followed second =
+      follow_chirp(part, found.members, {sweep.at(whole - seconds), sweep.slope_hz_s}, 2.0 / seconds);
   return describe(part, found.members, first.x > second.x ? first : second);
 }
 
 /// `found` is of the other half, which need not be as long: the run goes on from its end, or came to its beginning.
+/// What it says of the frequencies here has an error of its own (the derivative of a second degree's fit, a length away
+/// from its middle), so that the best sweep within two deviations is taken, less the logarithm of how many there are.
 double log_gain(const FullRate& data, const Evidence& found) {
   const double amplitude = found.parameters[0].estimate.value;
-  const auto other_half = [&](std::size_t r) { return whole_length_s(data, r) - length_s(data, r); };
-  double seconds = 0.0;
+  double whole = 0.0;
   for (const std::size_t r : found.members) {
-    seconds = std::max(seconds, other_half(r));
+    whole = std::max(whole, whole_length_s(data, r));
   }
-  const Sweep sweep = sweep_of(found, seconds);
-  double after = 0.0;
-  double before = 0.0;
-  for (const std::size_t r : found.members) {
-    const PhaseFit on = fit_phases(data, r, {Sweep{sweep.at(other_half(r)), sweep.slope_hz_s}});
-    const PhaseFit back = fit_phases(data, r, {Sweep{sweep.at(-length_s(data, r)), sweep.slope_hz_s}});
-    after += log_gain_of(on.amplitude[0], on.variance, amplitude);
-    before += log_gain_of(back.amplitude[0], back.variance, amplitude);
-  }
-  return std::max(after, before);
+  const double here = longest_s(data, found.members);
+  const double other = whole - here;
+  const Sweep sweep = sweep_of(found, other);
+  const double sd_f = std::sqrt(408.0 / std::max(1.0, found.gain)) / (std::numbers::pi * other);
+  const double reach = std::clamp(2.0 * sd_f, 2.0 / here, 6.0 / here);
+  const double places = std::max(1.0, 2.0 * std::pow(reach * here, 2.0));
+  const auto gain_along = [&](const Sweep& expected) {
+    const Followed best = follow_chirp(data, found.members, expected, reach);
+    double gain = -std::log(places);
+    for (const std::size_t r : found.members) {
+      const PhaseFit fit = fit_phases(data, r, {best.sweep});
+      gain += log_gain_of(fit.amplitude[0], fit.variance, amplitude);
+    }
+    return gain;
+  };
+  return std::max(gain_along({sweep.at(other), sweep.slope_hz_s}), gain_along({sweep.at(-here), sweep.slope_hz_s}));
 }
 
 std::vector<double> values_of(const FullRate& data, std::size_t r, const Evidence& found) {
-  double longest = 0.0;
-  for (const std::size_t m : found.members) {
-    longest = std::max(longest, length_s(data, m));
-  }
-  return fit_phases(data, r, {sweep_of(found, longest)}).values;
+  return fit_phases(data, r, {sweep_of(found, longest_s(data, found.members))}).values;
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFarthest = 0.45;  ///< [Hz]
 constexpr double kLowest = 1.0;     ///< [Hz]: below, slow noise has company of its own
-constexpr double kBeside = 12.0;    ///< score of the two lines beside the carrier
+constexpr double kBeside = 4.0;     ///< score of the two lines beside the carrier
 
 double length_s(const FullRate& data, std::size_t r) {
   return static_cast<double>(data.innovation[r].size()) * data.dt_s;
@@ -30,25 +30,50 @@ class Neighbourhood {
     const auto block = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / data.dt_s)));
     for (const std::size_t r : scope) {
       beaten_.push_back(beat(data, r, {f_hz, 0.0}, block));
-      excess_.push_back(excess_between(data, r, f_hz - kFarthest, f_hz + kFarthest));
+      excess_.push_back(BandPower(data, r).most_between(f_hz - kFarthest, f_hz + kFarthest));
     }
   }
   [[nodiscard]] double operator()(double df_hz) const {
     double x = 0.0;
     for (std::size_t k = 0; k < beaten_.size(); ++k) {
-      std::complex<double> sum = 0.0;
-      const std::complex<double> turn = std::polar(1.0, -kTurn * df_hz * beaten_[k].step_s);
-      std::complex<double> phase = 1.0;
-      for (const auto& value : beaten_[k].sums) {
-        sum += value * phase;
-        phase *= turn;
-      }
-      x += 2.0 * std::norm(sum) / std::max(1.0, beaten_[k].samples) / excess_[k];
+      x += std::norm(ordinate(k, df_hz));
+    }
+    return x;
+  }
+  /// X of a carrier and two lines beside it whose amplitudes are as 2 : 1 : 1 and whose phases are those of one
+  /// envelope: three numbers a recording where three lines have six.
+  [[nodiscard]] double whole(double df_hz, double fm_hz) const {
+    double x = 0.0;
+    for (std::size_t k = 0; k < beaten_.size(); ++k) {
+      x += best_envelope(ordinate(k, df_hz), ordinate(k, df_hz - fm_hz), ordinate(k, df_hz + fm_hz));
     }
     return x;
   }
 
  private:
+  /// Of recording k; its square is chi-square with two degrees of freedom where there is noise alone.
+  [[nodiscard]] std::complex<double> ordinate(std::size_t k, double df_hz) const {
+    std::complex<double> sum = 0.0;
+    const std::complex<double> turn = std::polar(1.0, -kTurn * df_hz * beaten_[k].step_s);
+    std::complex<double> phase = 1.0;
+    for (const auto& value : beaten_[k].sums) {
+      sum += times(value, phase);
+      phase = times(phase, turn);
+    }
+    return sum * std::sqrt(2.0 / std::max(1.0, beaten_[k].samples) / excess_[k]);
+  }
+  /// Square of the projection on (2, e^-ia, e^ia) / sqrt(6), at the a that makes it largest.
+  static double best_envelope(const std::complex<double>& carrier, const std::complex<double>& low,
+                              const std::complex<double>& high) {
+    constexpr int kSteps = 24;
+    double most = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const auto turn = std::polar(1.0, kTurn * static_cast<double>(i) / kSteps);
+      most = std::max(most, std::norm(2.0 * carrier + times(turn, low) + times(std::conj(turn), high)));
+    }
+    return most / 6.0;
+  }
+
   std::vector<Beaten> beaten_;
   std::vector<double> excess_;
 };
@@ -58,24 +83,26 @@ struct Triple {
   double fm_hz = 0.0;
   double x = 0.0;
   double beside = 0.0;  ///< of x, what the two lines beside the carrier hold
+  double whole = 0.0;   ///< X of one sinusoid whose amplitude goes from nothing to its peak
 };
 
 /// The best carrier and distance near a pair of them.
 Triple refined(const Neighbourhood& near, double f_hz, double df, double fm, double step) {
   const auto value = [&](double f, double m) { return near(f) + near(f - m) + near(f + m); };
-  Triple best{df, fm, value(df, fm), 0.0};
+  Triple best{df, fm, value(df, fm), 0.0, 0.0};
   for (int round = 0; round < 5; ++round, step *= 0.5) {
     const Triple centre = best;
     for (int i = -2; i <= 2; ++i) {
       for (int j = -2; j <= 2; ++j) {
         const double x = value(centre.f_hz + i * step, centre.fm_hz + j * step);
         if (x > best.x) {
-          best = {centre.f_hz + i * step, centre.fm_hz + j * step, x, 0.0};
+          best = {centre.f_hz + i * step, centre.fm_hz + j * step, x, 0.0, 0.0};
         }
       }
     }
   }
   best.beside = best.x - near(best.f_hz);
+  best.whole = near.whole(best.f_hz, best.fm_hz);
   best.f_hz += f_hz;
   return best;
 }
@@ -175,8 +202,9 @@ std::vector<Evidence> examine(const FullRate& data) {
     }
     const Triple triple = triple_about(data, line.members, line.shape);
     const double frequencies = 0.75 * longest / data.dt_s;
-    const double score = -2.0 * log_tail(triple.x, 3.0 * recordings) - choice_penalty(frequencies) -
-                         choice_penalty(3.0 * kFarthest * longest) - choice_penalty(scopes);
+    const double chance = std::min(log_tail(triple.x, 3.0 * recordings), log_tail(triple.whole, 1.5 * recordings));
+    const double score = -2.0 * chance - choice_penalty(frequencies) - choice_penalty(3.0 * kFarthest * longest) -
+                         choice_penalty(scopes);
     // By themselves the two beside it must be more than chance, or the line is one line.
     const double beside = -2.0 * log_tail(triple.beside, 2.0 * recordings) - choice_penalty(3.0 * kFarthest * longest);
     if (score < 4.0 || beside < kBeside || !is_modulated(data, line.members, triple)) {

@@ -14,38 +14,58 @@ double Sweep::phase(double t) const { return kTurn * (f_hz * t + 0.5 * slope_hz_
 
 Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block) {
   const Series& e = data.innovation[r];
+  const double dt = data.dt_s;
   Beaten beaten;
-  beaten.step_s = static_cast<double>(block) * data.dt_s;
-  beaten.sums.resize(e.size() / block + (e.size() % block != 0 ? 1 : 0));
-  for (std::size_t i = 0; i < e.size() && !polled(data.stop, i); ++i) {
-    if (data.used[r][i] != 0) {
-      const double clipped = std::clamp(e[i], -6.0, 6.0);
-      beaten.sums[i / block] += std::polar(clipped, -sweep.phase(static_cast<double>(i) * data.dt_s));
-      beaten.samples += 1.0;
+  beaten.step_s = static_cast<double>(block) * dt;
+  const std::size_t blocks = e.size() / block + (e.size() % block != 0 ? 1 : 0);
+  beaten.sums.reserve(blocks);
+  const std::complex<double> more = std::polar(1.0, -kTurn * sweep.slope_hz_s * dt * dt);
+  for (std::size_t b = 0; b < blocks && !data.stopped(); ++b) {
+    const double begin_s = static_cast<double>(b * block) * dt;
+    std::complex<double> turn = std::polar(1.0, -sweep.phase(begin_s));
+    std::complex<double> next = std::polar(1.0, sweep.phase(begin_s) - sweep.phase(begin_s + dt));
+    std::complex<double> sum = 0.0;
+    for (std::size_t i = b * block; i < std::min(e.size(), (b + 1) * block); ++i) {
+      if (data.used[r][i] != 0) {
+        sum += std::clamp(e[i], -6.0, 6.0) * turn;
+        beaten.samples += 1.0;
+      }
+      turn = times(turn, next);
+      next = times(next, more);
     }
+    beaten.sums.push_back(sum);
   }
   return beaten;
 }
 
-double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz) {
-  if (data.stopped()) {
+BandPower::BandPower(const FullRate& data, std::size_t r) {
+  const std::size_t n = fast_length(data.innovation[r].size());
+  if (n == 0 || data.stopped()) {
+    return;
+  }
+  const auto z = transform(data.innovation[r].part(0, n));
+  df_hz_ = 1.0 / (static_cast<double>(n) * data.dt_s);
+  sums_.reserve(z.size() + 1);
+  sums_.push_back(0.0);
+  for (const std::complex<double>& value : z) {
+    sums_.push_back(sums_.back() + std::min(12.0, std::norm(value) / static_cast<double>(n)));  // a line is no noise
+  }
+}
+
+double BandPower::most_between(double low_hz, double high_hz) const {
+  if (sums_.empty()) {
     return 1.0;
   }
-  const std::size_t n = fast_length(data.innovation[r].size());
-  const auto z = transform(data.innovation[r].part(0, n));
-  const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
-  const auto width = static_cast<std::size_t>(std::max(24.0, 0.25 / df));
-  const auto from = static_cast<std::size_t>(std::max(1.0, std::min(low_hz, high_hz) / df));
-  const auto to = static_cast<std::size_t>(std::max(low_hz, high_hz) / df);
+  const std::size_t size = sums_.size() - 1;
+  const auto width = static_cast<std::size_t>(std::max(24.0, 0.25 / df_hz_));
+  const auto from = static_cast<std::size_t>(std::max(1.0, std::min(low_hz, high_hz) / df_hz_));
+  const auto to = static_cast<std::size_t>(std::max(0.0, std::max(low_hz, high_hz)) / df_hz_);
   double most = 1.0;
-  for (std::size_t k = from > width / 2 ? from - width / 2 : 1; k < std::min(to + 1, z.size()); k += width) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t j = k; j < std::min(k + width, z.size()); ++j) {
-      sum += std::min(12.0, std::norm(z[j]) / static_cast<double>(n));  // a line is no excess of the noise
-      count += 1.0;
+  for (std::size_t k = from > width / 2 ? from - width / 2 : 1; k < std::min(to + 1, size); k += width) {
+    const std::size_t end = std::min(k + width, size);
+    if (end > k + 4) {
+      most = std::max(most, (sums_[end] - sums_[k]) / static_cast<double>(end - k));
     }
-    most = count > 4.0 ? std::max(most, sum / count) : most;
   }
   return most;
 }
@@ -114,7 +134,7 @@ PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep
     lowest = std::min({lowest, sweep.f_hz, end});
     highest = std::max({highest, sweep.f_hz, end});
   }
-  const double level = data.innovation_sd * data.innovation_sd * excess_between(data, r, lowest, highest);
+  const double level = data.innovation_sd * data.innovation_sd * BandPower(data, r).most_between(lowest, highest);
   fit.variance = 2.0 * level / used;
   return fit;
 }

@@ -32,9 +32,17 @@ struct Beaten {
 };
 [[nodiscard]] Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block);
 
-/// Mean power of the innovations of member r, 1 where white, over each band of a quarter of a hertz; its largest value
-/// between two frequencies, at least 1.
-[[nodiscard]] double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz);
+/// Mean power of the innovations of a recording, 1 where white, over bands of a quarter of a hertz.
+class BandPower {
+ public:
+  BandPower(const FullRate& data, std::size_t r);
+  /// Its largest value between two frequencies, at least 1.
+  [[nodiscard]] double most_between(double low_hz, double high_hz) const;
+
+ private:
+  double df_hz_ = 1.0;
+  std::vector<double> sums_;  ///< of the ordinates before each
+};
 
 /// ln of the chance that chi-square with 2 k degrees of freedom exceeds x.
 [[nodiscard]] double log_tail(double x, double k);
@@ -46,6 +54,11 @@ struct PhaseFit {
   std::vector<double> values;                   ///< over the analysed part
 };
 [[nodiscard]] PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep>& sweeps);
+
+/// a b; std::complex looks for values that are not finite as well, which costs three times as much.
+[[nodiscard]] inline std::complex<double> times(const std::complex<double>& a, const std::complex<double>& b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
 
 /// The scopes in which such an effect is looked for: all recordings, and each by itself.
 [[nodiscard]] std::vector<std::vector<std::size_t>> scopes_of(const FullRate& data);
