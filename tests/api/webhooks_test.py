@@ -343,10 +343,12 @@ class Lives(unittest.TestCase):
                 with Daemon(data, arguments=QUICK) as daemon:
                     if life == 0:
                         daemon.post("/v1/webhooks", {"url": receiver.url})
-                    stop = threading.Timer(0.25 + 0.1 * life, daemon.process.kill)
-                    stop.start()
+                    # After a few answers, however slow the machine is, and somewhere in the work that follows them.
+                    stop = threading.Timer(0.02 + 0.03 * life, daemon.process.kill)
                     try:
                         for seed in range(100):
+                            if seed == 2 + life:
+                                stop.start()
                             content = samples.gyro_csv(300, seed=100 * life + seed)
                             made = daemon.upload(content, rate_hz=100, columns=samples.GYRO_Z).json["id"]
                             jobs.add(daemon.characterise(made, models=["WN"]).json["id"])
@@ -364,7 +366,7 @@ class Lives(unittest.TestCase):
                     told.setdefault(message.document["data"]["job"], set()).add(message.id)
                 self.assertLessEqual(jobs, set(told), "an end is untold")
                 self.assertEqual({len(ids) for ids in told.values()}, {1}, "one end, one id")
-            self.assertGreater(len(jobs), 4)
+            self.assertGreaterEqual(len(jobs), 2 + 3 + 4 + 5)
 
 
 if __name__ == "__main__":
