@@ -29,15 +29,23 @@ Error damaged_columns(const std::string& sha256) {
 }  // namespace
 
 void Scrubber::start() {
+  looking_ = std::jthread([this](const std::stop_token& stop) {
+    using namespace std::chrono_literals;
+    while (rest(stop, 3s)) {
+      (void)guarded_round("scrubber", [&] { look_again(stop); });
+    }
+  });
   if (bytes_per_second_ > 0) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 }
 
 void Scrubber::stop() {
-  thread_.request_stop();
-  if (thread_.joinable()) {
-    thread_.join();
+  for (std::jthread* const thread : {&thread_, &looking_}) {
+    thread->request_stop();
+    if (thread->joinable()) {
+      thread->join();
+    }
   }
 }
 
@@ -154,9 +162,30 @@ void Scrubber::read_rows(const std::stop_token& stop, const ReadingPace& pace) {
   }
   for (const std::string& row : before) {
     if (!found.contains(row)) {
-      const std::lock_guard<std::mutex> guard(mutex_);
-      damaged_rows_.erase(row);
-      states_.end(BadState::RowDamaged, row);
+      end(row);
+    }
+  }
+}
+
+void Scrubber::end(const std::string& row) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  damaged_rows_.erase(row);
+  states_.end(BadState::RowDamaged, row);
+}
+
+void Scrubber::look_again(const std::stop_token& stop) {
+  std::set<std::string> known;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    known = damaged_rows_;
+  }
+  for (const std::string& row : known) {
+    const auto damaged = store_.is_damaged(row);
+    if (damaged && damaged->has_value() && !**damaged) {
+      end(row);
+    }
+    if (stop.stop_requested()) {
+      return;
     }
   }
 }

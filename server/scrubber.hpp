@@ -44,8 +44,8 @@ class Scrubber {
   /// was found by a job or in the background, and count as sound before.
   [[nodiscard]] Status expect_sound_columns(const std::string& sha256);
 
-  /// A row that somebody found damaged, as `table/key`. Its state ends once the row is sound, or gone, in the
-  /// background.
+  /// A row that somebody found damaged, as `table/key`. Its state ends some seconds after the row is sound, or gone,
+  /// whoever reads in the background.
   void note_damaged_row(const std::string& row);
 
   struct Findings {
@@ -61,6 +61,9 @@ class Scrubber {
   /// Reads everything that is stored, once, where this process does that. False: another one does.
   [[nodiscard]] bool read_all(const std::stop_token& stop, const ReadingPace& pace);
   void read_rows(const std::stop_token& stop, const ReadingPace& pace);
+  void end(const std::string& row);
+  /// Reads the rows that are known to be damaged again.
+  void look_again(const std::stop_token& stop);
   void read_back(const std::string& sha256, const std::stop_token& stop, const ReadingPace& pace);
   void note(const std::string& sha256, BlobState state);
 
@@ -75,6 +78,7 @@ class Scrubber {
   std::set<std::string> damaged_;
   std::set<std::string> damaged_rows_;
   std::jthread thread_;
+  std::jthread looking_;
 };
 
 }  // namespace driftlab::server

@@ -3,6 +3,7 @@
 #include "server/store/digest.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <span>
 
 namespace driftlab::server {
@@ -203,6 +204,33 @@ Result<ReadBack> read_back(Connection& connection, const SealedTable& table, con
       read.damaged.push_back(damaged_row_of(damaged_row(table.name, table.noun, joined(read.last, "/"))));
     }
   }
+}
+
+Result<std::optional<bool>> is_damaged(Connection& connection, std::string_view row) {
+  std::vector<std::string> key;
+  for (const auto part : std::views::split(row, '/')) {
+    key.emplace_back(part.begin(), part.end());
+  }
+  const std::string name = key.front();
+  key.erase(key.begin());
+  const auto table = std::ranges::find(sealed_tables(), name, &SealedTable::name);
+  if (table == sealed_tables().end() || table->key.size() != key.size()) {
+    return std::nullopt;
+  }
+  std::string text = "SELECT seal, " + std::string(table->columns) + " FROM " + name + " WHERE ";
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    text.append(i > 0 ? " AND " : "").append(table->key[i]).append(" = ?");
+  }
+  Statement statement = connection.prepare(text);
+  for (const std::string& part : key) {
+    statement.bind(part);
+  }
+  const Result<bool> found = statement.step();
+  if (!found || !*found) {
+    return found ? Result<std::optional<bool>>(false) : fail(found.error());
+  }
+  const std::vector<std::string> values = texts_of(statement, 1, count_of(table->columns));
+  return !seal_fits(statement.text(0), seal_of_texts({values.begin(), values.end()}));
 }
 
 Result<int> seal_rows(Connection& connection, const SealedTable& table, int limit) {

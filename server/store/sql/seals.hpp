@@ -12,6 +12,7 @@
 #include "server/store/sql/connection.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,7 +29,7 @@ struct SealedTable {
 
 /// Every sealed table.
 [[nodiscard]] const std::vector<SealedTable>& sealed_tables();
-/// That of this name. It must be one.
+/// That of this name, which must be one of them.
 [[nodiscard]] const SealedTable& sealed_table(std::string_view name);
 
 // ---- the seal of a row as the store holds it
@@ -81,6 +82,10 @@ struct ReadBack {
 /// Reads `limit` rows of a table behind the key `after` (empty: from the first one) and compares them with their seals.
 [[nodiscard]] Result<ReadBack> read_back(Connection& connection, const SealedTable& table,
                                          const std::vector<std::string>& after, int limit);
+
+/// Whether the row named `table/key` is damaged as it now is; one that is gone is not. Nothing where the name is not
+/// that of one sealed row, as of a key with a `/` in it.
+[[nodiscard]] Result<std::optional<bool>> is_damaged(Connection& connection, std::string_view row);
 
 /// Seals `limit` rows of a table that have no seal. How many there were.
 [[nodiscard]] Result<int> seal_rows(Connection& connection, const SealedTable& table, int limit);

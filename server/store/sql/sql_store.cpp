@@ -358,6 +358,10 @@ Status SqlStore::read_back_rows(const ReadingPace& pace, const std::function<voi
   return {};
 }
 
+Result<std::optional<bool>> SqlStore::is_damaged(std::string_view row) {
+  return database_->read([&](Connection& c) { return server::is_damaged(c, row); });
+}
+
 Result<int> SqlStore::queue_missing_pools() {
   return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::queue_missing_pools(c, now(c)); });
 }

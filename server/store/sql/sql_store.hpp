@@ -48,6 +48,8 @@ class SqlStore : public Store {
   /// rows and the next. Errors: those of the database; Cancelled.
   [[nodiscard]] Status read_back_rows(const ReadingPace& pace,
                                       const std::function<void(const std::string& row)>& damaged);
+  /// Whether one row, as `table/key`, is damaged as it now is; nothing where only read_back_rows can say it.
+  [[nodiscard]] Result<std::optional<bool>> is_damaged(std::string_view row);
   /// `listener` is told of every row that a read finds damaged. To be called before others use the store.
   void tell_damage_to(DamageListener listener) { database_->tell_damage_to(std::move(listener)); }
 

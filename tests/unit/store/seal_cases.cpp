@@ -181,7 +181,9 @@ TEST_P(SealedRows, AFlippedBitIsNoticedInEveryColumnOfEveryTable) {
         continue;  // a constraint is against it, as of a key that another table names
       }
       ++flipped;
-      EXPECT_EQ(damaged().size(), 1U) << table.name << "." << column;
+      const std::vector<std::string> named = damaged();
+      ASSERT_EQ(named.size(), 1U) << table.name << "." << column;
+      EXPECT_EQ(*rows().is_damaged(named.front()), std::optional(true)) << named.front();
       if (!names_rows) {  // by another name the row is not found
         told = 0;
         const auto error = read();
@@ -192,10 +194,19 @@ TEST_P(SealedRows, AFlippedBitIsNoticedInEveryColumnOfEveryTable) {
       }
       ASSERT_TRUE(write(table, column, sound)) << table.name << "." << column;
       ASSERT_EQ(read(), std::nullopt) << table.name << "." << column;
+      EXPECT_EQ(*rows().is_damaged(named.front()), std::optional(false)) << named.front();
     }
     EXPECT_GE(flipped, 1) << table.name;
   }
   EXPECT_THAT(damaged(), IsEmpty());
+}
+
+TEST_P(SealedRows, OfANameThatIsNoRowsNothingIsSaid) {
+  fill();
+  EXPECT_EQ(*rows().is_damaged("kitchens/spoon"), std::optional<bool>());
+  EXPECT_EQ(*rows().is_damaged("devices"), std::optional<bool>());
+  EXPECT_EQ(*rows().is_damaged("devices/a/b"), std::optional<bool>());
+  EXPECT_EQ(*rows().is_damaged("devices/gone"), std::optional(false));
 }
 
 TEST_P(SealedRows, ASealThatIsDamagedItselfIsNoticed) {
