@@ -121,8 +121,9 @@ class VisibleStore final : public Store {
   Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) override {
     return whole_.jobs(filter, limited(page));
   }
-  Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) override {
-    return whole_.claim(lease_micros, running_per_token);
+  Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token,
+                                   const std::vector<KnownKind>& known) override {
+    return whole_.claim(lease_micros, running_per_token, known);
   }
   Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override {
     return whole_.renew(lease, lease_micros);

@@ -96,6 +96,7 @@ std::string_view instruction_set() {
 class Characterise final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "characterise"; }
+  [[nodiscard]] int version() const override { return kAlgorithmVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {
@@ -124,10 +125,7 @@ class Characterise final : public JobKind {
     if (!wanted->study.empty()) {
       named["study"] = wanted->study;
     }
-    return Json{{"kind", name()},
-                {"inputs", std::move(named)},
-                {"parameters", to_json(options)},
-                {"algorithm_version", kAlgorithmVersion}};
+    return Json{{"kind", name()}, {"inputs", std::move(named)}, {"parameters", to_json(options)}};
   }
 
   /// A few arrays of one channel's length at a time.

@@ -47,6 +47,7 @@ Result<Json> asked_document(const Json& inputs, JobContext& context, std::string
 class DriveEvaluationKind final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "drive_evaluation"; }
+  [[nodiscard]] int version() const override { return drive::kDriveAlgorithmVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {
@@ -72,10 +73,7 @@ class DriveEvaluationKind final : public JobKind {
     if (!checked->left_out.empty()) {
       complete["left_out"] = std::move(checked->left_out);
     }
-    return Json{{"kind", name()},
-                {"inputs", std::move(complete)},
-                {"parameters", to_json(wanted)},
-                {"algorithm_version", drive::kDriveAlgorithmVersion}};
+    return Json{{"kind", name()}, {"inputs", std::move(complete)}, {"parameters", to_json(wanted)}};
   }
 
   /// Tables, readings with and without repairs, and a corrected copy in each of the filters that run side by side.

@@ -127,6 +127,7 @@ class Rows {
 class Investigate final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "investigate"; }
+  [[nodiscard]] int version() const override { return kInvestigationVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {
@@ -168,8 +169,7 @@ class Investigate final : public JobKind {
     }
     return Json{{"kind", name()},
                 {"inputs", {{"study", study_id}, {"recordings", std::move(*pinned)}}},
-                {"parameters", {{"baseline", baseline}}},
-                {"algorithm_version", kInvestigationVersion}};
+                {"parameters", {{"baseline", baseline}}}};
   }
 
   /// The innovations of every channel, and beside them one channel at a time, in small studies three. Where a gyroscope

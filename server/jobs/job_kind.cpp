@@ -9,6 +9,7 @@ Result<NewJob> new_job(const JobKind& kind, const Json& inputs, const Json& para
   if (!request) {
     return fail(request.error());
   }
+  (*request)["algorithm_version"] = kind.version();
   if (auto admitted = admit_cost(kind.cost(*request, context), context.budgets, context.computing); !admitted) {
     return fail(admitted.error());
   }

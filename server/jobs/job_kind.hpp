@@ -37,8 +37,12 @@ class JobKind {
 
   [[nodiscard]] virtual std::string_view name() const = 0;
 
+  /// The version of its algorithm, `algorithm_version` of each request. It goes up where results change, and where a
+  /// request has a member that the version before does not know: a process takes no job of a later version.
+  [[nodiscard]] virtual int version() const { return 1; }
+
   /// Checks a request (`inputs` and `parameters` of POST /v1/jobs) and completes it: defaults filled in, input
-  /// revisions pinned, algorithm version. Its canonical text makes the job unique. Errors are the client's fault,
+  /// revisions pinned. With the version its canonical text makes the job unique. Errors are the client's fault,
   /// located by fields that are pointers (RFC 6901).
   [[nodiscard]] virtual Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                        JobContext& context) const = 0;

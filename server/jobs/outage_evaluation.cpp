@@ -37,6 +37,7 @@ void add_biases(Json& scenario, const StoredSensors& sensors, const std::string&
 class OutageEvaluationKind final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "outage_evaluation"; }
+  [[nodiscard]] int version() const override { return kOutageAlgorithmVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {
@@ -66,10 +67,7 @@ class OutageEvaluationKind final : public JobKind {
     if (!sensors.left_out.empty()) {
       complete["left_out"] = std::move(sensors.left_out);
     }
-    return Json{{"kind", name()},
-                {"inputs", std::move(complete)},
-                {"parameters", to_json(options)},
-                {"algorithm_version", kOutageAlgorithmVersion}};
+    return Json{{"kind", name()}, {"inputs", std::move(complete)}, {"parameters", to_json(options)}};
   }
 
   /// The motion of the drive, which all runs share; the runs themselves take their errors sample by sample.

@@ -56,6 +56,7 @@ Result<SensorAxis> read_axis(const Json& inputs, Store& store, Faults& faults) {
 class Pool final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return kPoolKind; }
+  [[nodiscard]] int version() const override { return kPoolVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {

@@ -63,6 +63,7 @@ void for_each_pinned(const Json& inputs, const std::function<void(const Json&)>&
 class Regress final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return kRegressKind; }
+  [[nodiscard]] int version() const override { return kRegressionVersion; }
 
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                JobContext& context) const override {
@@ -111,8 +112,7 @@ class Regress final : public JobKind {
                 {"parameters", std::move(settings)},
                 {"look", {{"number", look}, {"counted", counted}}},
                 {"kept", kept ? kept_settings_json(*kept) : Json(nullptr)},
-                {"stated", written.stated},
-                {"algorithm_version", kRegressionVersion}};
+                {"stated", written.stated}};
   }
 
   /// Measured (tests/RELIABILITY.md): what is held of the result of each channel, and the draws over all of them.

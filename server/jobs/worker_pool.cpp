@@ -97,7 +97,8 @@ void WorkerPool::Implementation::work() {
 bool WorkerPool::Implementation::run_next() {
   // A store that does not answer is asked again like one that has nothing to do.
   std::optional<Job> claimed =
-      context.store.claim(options.lease_micros, context.budgets.running_jobs_per_token).value_or(std::nullopt);
+      context.store.claim(options.lease_micros, context.budgets.running_jobs_per_token, options.known)
+          .value_or(std::nullopt);
   if (!claimed) {
     return false;
   }

@@ -33,6 +33,8 @@ struct WorkerOptions {
   /// Runs the maintenance (server/jobs/maintenance.hpp) beside the workers.
   bool maintain = true;
   MaintenanceOptions maintenance = {};
+  /// The kinds of jobs that are taken; empty: all. Those of the registry are filled in with it.
+  std::vector<KnownKind> known = {};
   /// Called when an attempt has ended, with the job's kind, how it ended (server/observe/metrics.hpp) and the seconds
   /// it took. May be empty.
   std::function<void(std::string_view kind, std::string_view outcome, double seconds)> attempt_ended;

@@ -139,6 +139,12 @@ struct DeviceChange {
   std::optional<std::string> model, imu, serial, labels_json;
 };
 
+/// A kind of jobs that a process can run, with the version of its algorithm.
+struct KnownKind {
+  std::string name;
+  int version = 0;
+};
+
 struct NewJob {
   std::string kind;
   std::string unique_key;
@@ -187,6 +193,8 @@ class Store {
   // ---- health
   /// Answers a trivial query. For /readyz.
   [[nodiscard]] virtual Status ping() = 0;
+  /// A sentence about the schema of the store, where that is a newer program's beside which this one works; else empty.
+  [[nodiscard]] virtual std::string newer_schema() const { return {}; }
   /// Writes a row and waits until it is on disk. For /readyz.
   [[nodiscard]] virtual Status write_probe() = 0;
   /// Of what is `visible`; nothing: of everything.
@@ -256,10 +264,13 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) = 0;
   /// The next runnable job by (priority with ageing, run_at, id), now `running` with a lease; nothing if none is due.
   /// One that tokens asked for waits while each of them has `running_per_token` jobs running. Daemons that claim from
-  /// one PostgreSQL at the same moment may pass that by one each.
-  [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) = 0;
-  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros) {
-    return claim(lease_micros, std::numeric_limits<std::int64_t>::max());
+  /// one PostgreSQL at the same moment may pass that by one each. A job of a kind that is not `known`, or of a later
+  /// version, is left to the newer program that works beside this one; nothing known: every job is taken.
+  [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token,
+                                                         const std::vector<KnownKind>& known) = 0;
+  [[nodiscard]] Result<std::optional<Job>> claim(
+      std::int64_t lease_micros, std::int64_t running_per_token = std::numeric_limits<std::int64_t>::max()) {
+    return claim(lease_micros, running_per_token, {});
   }
   [[nodiscard]] virtual Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,

@@ -10,7 +10,8 @@
 namespace driftlab::server::tables {
 namespace {
 
-/// ?1 now, ?2 lease end, ?3 longest pause, ?4 ageing step, ?5 jobs of one token that run at once. A job without
+/// ?1 now, ?2 lease end, ?3 longest pause, ?4 ageing step, ?5 jobs of one token that run at once, ?6 what the process
+/// can run, as `can_run` writes it. A job without
 /// failures has nothing to wait for, and nobody has to wait longer than the longest pause: a run_at beyond it was
 /// written before the clock went back. Where several claim at a time each passes over what another one is about to
 /// take.
@@ -24,10 +25,15 @@ namespace {
 #define DRIFTLAB_BESIDE                                                                                \
   "coalesce((SELECT min(coalesce(running.jobs, 0)) FROM owners LEFT JOIN running ON running.token_id " \
   "= owners.token_id WHERE owners.object_id = jobs.id), 0)"
-#define DRIFTLAB_NEXT_JOB(LARGER)                                                                       \
-  "WITH " DRIFTLAB_RUNNING_OF_TOKENS                                                                    \
-  " SELECT id FROM jobs WHERE state = 'queued' AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " \
-  "AND " DRIFTLAB_BESIDE " < ?5 ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER                      \
+/// A canonical request begins with its version, for its members are sorted.
+#define DRIFTLAB_CAN_RUN                                                                                         \
+  "(?6 = '[]' OR jobs.kind || ' ' || CASE substr(jobs.request_json, 1, 21) WHEN '{\"algorithm_version\":' THEN " \
+  "substr(jobs.request_json, 22, CAST(instr(substr(jobs.request_json, 22, 12) || ',', ',') AS INTEGER) - 1) "    \
+  "ELSE '0' END IN (SELECT value FROM json_each(?6)))"
+#define DRIFTLAB_NEXT_JOB(LARGER)                                                                           \
+  "WITH " DRIFTLAB_RUNNING_OF_TOKENS                                                                        \
+  " SELECT id FROM jobs WHERE state = 'queued' AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) "     \
+  "AND " DRIFTLAB_BESIDE " < ?5 AND " DRIFTLAB_CAN_RUN " ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER \
   "(0, ?1 - run_at) / ?4, run_at, id LIMIT 1"
 #define DRIFTLAB_CLAIM(NEXT)                                                                                       \
   "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', " \
@@ -131,14 +137,26 @@ std::optional<JobState> end_after(const AttemptFailure& failure, const HeldJob& 
   return job.cancel_requested ? std::optional(JobState::Cancelled) : std::nullopt;
 }
 
+/// `["pool 0","pool 1"]`: each kind with every version up to the one that the process has; names are plain words.
+std::string can_run(const std::vector<KnownKind>& known) {
+  std::string list = "[";
+  for (const KnownKind& kind : known) {
+    for (int version = 0; version <= kind.version; ++version) {
+      list.append(list.size() > 1 ? ",\"" : "\"").append(kind.name).append(" ");
+      list.append(std::to_string(version)).append("\"");
+    }
+  }
+  return list + "]";
+}
+
 }  // namespace
 
 Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, std::int64_t running_per_token,
-                                 UtcMicros now) {
+                                 const std::vector<KnownKind>& known, UtcMicros now) {
   std::optional<Job> claimed;
   {
     Statement update = connection.prepare(kClaim);
-    update.bind(now, now + lease_micros, kLongestPauseMicros, kAgeingMicros, running_per_token);
+    update.bind(now, now + lease_micros, kLongestPauseMicros, kAgeingMicros, running_per_token, can_run(known));
     Result<std::optional<Job>> row = first_row(update, read_job);
     if (!row) {
       return row;

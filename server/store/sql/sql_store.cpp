@@ -222,9 +222,11 @@ Result<std::vector<Job>> SqlStore::jobs(const JobFilter& filter, const Page& pag
   return database_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
 }
 
-Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros, std::int64_t running_per_token) {
-  return database_->write(WriteKind::Fenced,
-                          [&](Connection& c) { return tables::claim(c, lease_micros, running_per_token, now(c)); });
+Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros, std::int64_t running_per_token,
+                                           const std::vector<KnownKind>& known) {
+  return database_->write(WriteKind::Fenced, [&](Connection& c) {
+    return tables::claim(c, lease_micros, running_per_token, known, now(c));
+  });
 }
 
 Result<LeaseStatus> SqlStore::renew(const Lease& lease, std::int64_t lease_micros) {

@@ -91,7 +91,8 @@ class SqlStore : public Store {
   [[nodiscard]] Result<Job> job(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) override;
   using Store::claim;
-  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) override;
+  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token,
+                                                 const std::vector<KnownKind>& known) override;
   [[nodiscard]] Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override;
   [[nodiscard]] Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
                                                     double progress) override;

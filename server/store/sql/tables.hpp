@@ -228,7 +228,8 @@ class FilteredQuery {
 
 // ---- jobs: working
 [[nodiscard]] Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros,
-                                               std::int64_t running_per_token, UtcMicros now);
+                                               std::int64_t running_per_token, const std::vector<KnownKind>& known,
+                                               UtcMicros now);
 [[nodiscard]] Result<LeaseStatus> renew(Connection& connection, const Lease& lease, std::int64_t lease_micros,
                                         UtcMicros now);
 [[nodiscard]] Result<LeaseStatus> report_progress(Connection& connection, const Lease& lease, std::string_view stage,

@@ -70,6 +70,27 @@ TEST_P(JobStore, AJobThatSeveralAskedForIsThatOfTheOneWithTheFewest) {
   EXPECT_EQ(claim_one(store()).id, alone.id);
 }
 
+TEST_P(JobStore, AJobOfANewerProgramIsLeftToIt) {
+  const auto add = [this](const std::string& kind, const std::string& request) {
+    return store().enqueue({kind, kind + request, request, 5})->job.id;
+  };
+  const std::string later = add("characterise", R"({"algorithm_version":10,"inputs":{}})");
+  const std::string unknown = add("foretell", R"({"algorithm_version":1,"inputs":{}})");
+  const std::string same = add("characterise", R"({"algorithm_version":9,"inputs":{}})");
+  const std::string older = add("characterise", R"({"algorithm_version":8,"inputs":{}})");
+  const std::string without = add("pool", R"({"inputs":{}})");
+  const std::vector<KnownKind> known = {{"characterise", 9}, {"pool", 1}};
+  const std::int64_t many = 1000;
+  std::vector<std::string> taken;
+  while (const auto job = *store().claim(kLease, many, known)) {
+    taken.push_back(job->id);
+  }
+  EXPECT_THAT(taken, testing::ElementsAre(same, older, without));
+  EXPECT_EQ((*store().claim(kLease, many, {{"foretell", 2}}))->id, unknown);
+  EXPECT_EQ(store().job(later)->state, JobState::Queued);
+  EXPECT_EQ(claim_one(store()).id, later);
+}
+
 TEST_P(JobStore, AQueuedJobHoldsWhatWasAskedFor) {
   const auto made = store().enqueue({"characterise", "key", R"({"a":1})", 3});
   ASSERT_TRUE(made);
