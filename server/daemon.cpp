@@ -12,6 +12,7 @@
 #include "server/open_store.hpp"
 #include "server/pages/pages.hpp"
 #include "server/process.hpp"
+#include "server/program_version.hpp"
 #include "server/readiness.hpp"
 #include "server/scrubber.hpp"
 #include "server/store/backups.hpp"
@@ -97,7 +98,7 @@ struct Daemon::Parts {
             budgets,
             [this] { return reserve.release(); },
             [this] { return is_nearly_full(); },
-            [this] { return metrics.text(gauges(), DRIFTLAB_VERSION); },
+            [this] { return metrics.text(gauges(), program_version()); },
             [this] { return scrubber.findings().damaged; },
             [this](const std::string& blob) { return scrubber.verify_columns(blob); },
             [this](const std::string& blob) { return scrubber.expect_sound_columns(blob); },
@@ -118,6 +119,8 @@ struct Daemon::Parts {
     }
     api.computing = computing_threads(settings);
     api.backups = &backups;
+    api.version = program_version();
+    api.newer_schema = [this] { return store->newer_schema(); };
     api.workers = [this] { return others == nullptr ? Result<int>(jobs_at_once) : others->workers(); };
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
     if (others != nullptr) {
@@ -169,6 +172,7 @@ struct Daemon::Parts {
     options.maintenance.each_turn = [this] {
       look_after_reserve();
       readiness.look_after();
+      tell_newer_schema();
       states.look_after();
     };
     options.maintenance.each_tidy = [this] {
@@ -251,6 +255,15 @@ struct Daemon::Parts {
     return found;
   }
 
+  /// Once for each schema: a newer program has changed the store, and this one works on.
+  void tell_newer_schema() {
+    std::string sentence = store->newer_schema();
+    if (sentence != told_schema && !sentence.empty()) {
+      log_warning("newer schema", Json{{"detail", sentence}});
+    }
+    told_schema = std::move(sentence);
+  }
+
   /// Hears nothing more of other daemons.
   void silence() {
     if (others != nullptr) {
@@ -271,6 +284,7 @@ struct Daemon::Parts {
   std::stop_source stop_uploads;
   Metrics metrics;
   UtcMicros started_at = SystemClock().now();
+  std::string told_schema;  ///< the sentence that the log has of it
   DiskReserve reserve;
   std::unique_ptr<SystemClock> machine_clock;
   const Clock& clock;  ///< by which the store dates its rows
@@ -336,6 +350,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   if (!opened) {
     return fail(opened.error());
   }
+  opened->facts["version"] = program_version();
   log_info("store opened", opened->facts);
   SqlStore& store = *opened->store;
   auto blobs = open_blobs(settings, *opened);

@@ -6,6 +6,7 @@
 #include "server/move_store.hpp"
 #include "server/observe/log.hpp"
 #include "server/process.hpp"
+#include "server/program_version.hpp"
 #include "server/service_manager.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/crash_point.hpp"
@@ -161,7 +162,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
       "Flags win over DRIFTLAB_* variables, which win over the configuration file, which wins over defaults."};
-  app.set_version_flag("--version", std::string("driftlabd " DRIFTLAB_VERSION));
+  app.set_version_flag("--version", "driftlabd " + std::string(driftlab::server::program_version()));
   app.fallthrough();
   app.require_subcommand(0, 1);
   driftlab::server::GivenFlags given;

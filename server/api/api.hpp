@@ -52,6 +52,8 @@ struct ApiContext {
   Backups* backups = nullptr;
   int computing = 0;                          ///< threads that jobs share; 0: one for each core
   std::function<Result<int>()> workers = {};  ///< jobs that run at a time, in all processes that have the store
+  std::string_view version = DRIFTLAB_VERSION;
+  std::function<std::string()> newer_schema = {};  ///< a sentence where the store has a newer program's schema
 
   /// For a job that is asked for: what it takes is estimated, and no columns are read yet.
   [[nodiscard]] JobContext job_context() const { return {store, blobs, clock, budgets, {}, computing}; }

@@ -24,6 +24,9 @@ Result<Response> ready(const ApiContext& context) {
   if (const std::size_t damaged = context.damaged_blobs ? context.damaged_blobs() : 0; damaged > 0) {
     document["damaged_files"] = damaged;
   }
+  if (const std::string newer = context.newer_schema ? context.newer_schema() : std::string(); !newer.empty()) {
+    document["newer_schema"] = newer;
+  }
   for (const StandingState& standing : context.bad_states ? context.bad_states() : std::vector<StandingState>{}) {
     Json state{{"state", name_of(standing.state)},
                {"cause", standing.cause},
@@ -108,8 +111,8 @@ Result<Response> get_schema(const Request& request) {
 }  // namespace
 
 void add_watch_routes(Router& router, ApiContext& context) {
-  Route health{"GET", "/healthz", "health", {}, Handler([](const Request&) -> Result<Response> {
-                 return json_response(200, Json{{"status", "alive"}, {"version", DRIFTLAB_VERSION}});
+  Route health{"GET", "/healthz", "health", {}, Handler([&](const Request&) -> Result<Response> {
+                 return json_response(200, Json{{"status", "alive"}, {"version", context.version}});
                })};
   health.instant = true;
   router.add(std::move(health));

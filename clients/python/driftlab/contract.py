@@ -3178,6 +3178,8 @@ class ReadinessAnswer(TypedDict):
     status: Literal['ready']
     # Stored files that are damaged and could not be healed; the log names them.
     damaged_files: NotRequired[int]
+    # A sentence, where a newer driftlab has brought the database to a schema beside which this one works on.
+    newer_schema: NotRequired[str]
     # What is wrong now. Each begins and ends once in the log and in the audit log.
     states: NotRequired[list[ReadinessAnswerState]]
 

@@ -26,23 +26,24 @@ Result<ConnectionPool::Loan> ConnectionPool::take() {
   if (!idle_.empty()) {
     std::unique_ptr<PostgresConnection> connection = std::move(idle_.back());
     idle_.pop_back();
-    return Loan(*this, std::move(connection));
+    return Loan(*this, std::move(connection), generation_);
   }
   if (last_failure_ && std::chrono::steady_clock::now() < not_before_) {
     return fail(*last_failure_);
   }
   ++opened_;
+  const std::uint64_t generation = generation_;
   guard.unlock();
-  return open_another();
+  return open_another(generation);
 }
 
-Result<ConnectionPool::Loan> ConnectionPool::open_another() {
+Result<ConnectionPool::Loan> ConnectionPool::open_another(std::uint64_t generation) {
   auto connection = open_();
   const std::lock_guard<std::mutex> guard(mutex_);
   if (connection) {
     pause_ = {};
     last_failure_.reset();
-    return Loan(*this, std::move(*connection));
+    return Loan(*this, std::move(*connection), generation);
   }
   --opened_;
   note_failure(connection.error());
@@ -58,7 +59,18 @@ void ConnectionPool::note_failure(const Error& error) {
   last_failure_ = error;
 }
 
-void ConnectionPool::give_back(std::unique_ptr<PostgresConnection> connection) {
+void ConnectionPool::retire() {
+  std::vector<std::unique_ptr<PostgresConnection>> retired;  // closed without the lock
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    ++generation_;
+    retired.swap(idle_);
+    opened_ -= static_cast<int>(retired.size());
+  }
+  returned_.notify_all();
+}
+
+void ConnectionPool::give_back(std::unique_ptr<PostgresConnection> connection, std::uint64_t generation) {
   std::vector<std::unique_ptr<PostgresConnection>> broken;  // closed without the lock
   {
     const std::lock_guard<std::mutex> guard(mutex_);
@@ -66,6 +78,9 @@ void ConnectionPool::give_back(std::unique_ptr<PostgresConnection> connection) {
       broken.swap(idle_);
       broken.push_back(std::move(connection));
       opened_ -= static_cast<int>(broken.size());
+    } else if (generation != generation_) {
+      broken.push_back(std::move(connection));
+      --opened_;
     } else {
       idle_.push_back(std::move(connection));
     }

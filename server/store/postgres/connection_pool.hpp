@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -32,15 +33,15 @@ class ConnectionPool {
   /// A connection until it dies. It must not outlive the pool.
   class Loan {
    public:
-    Loan(ConnectionPool& pool, std::unique_ptr<PostgresConnection> connection)
-        : pool_(&pool), connection_(std::move(connection)) {}
+    Loan(ConnectionPool& pool, std::unique_ptr<PostgresConnection> connection, std::uint64_t generation)
+        : pool_(&pool), connection_(std::move(connection)), generation_(generation) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     Loan(Loan&& other) noexcept = default;
     Loan& operator=(Loan&& other) = delete;
     ~Loan() {
       if (connection_) {
-        pool_->give_back(std::move(connection_));
+        pool_->give_back(std::move(connection_), generation_);
       }
     }
     [[nodiscard]] PostgresConnection* operator->() const { return connection_.get(); }
@@ -49,16 +50,20 @@ class ConnectionPool {
    private:
     ConnectionPool* pool_;
     std::unique_ptr<PostgresConnection> connection_;
+    std::uint64_t generation_;
   };
 
   /// Waits up to 10 s for a connection that others use. Errors: Io.
   [[nodiscard]] Result<Loan> take();
 
+  /// Closes every connection: idle ones now, those that are lent out when they are given back.
+  void retire();
+
  private:
   using Moment = std::chrono::steady_clock::time_point;
 
-  void give_back(std::unique_ptr<PostgresConnection> connection);
-  [[nodiscard]] Result<Loan> open_another();
+  void give_back(std::unique_ptr<PostgresConnection> connection, std::uint64_t generation);
+  [[nodiscard]] Result<Loan> open_another(std::uint64_t generation);
   void note_failure(const Error& error);
 
   const Opener open_;
@@ -66,7 +71,8 @@ class ConnectionPool {
   std::mutex mutex_;
   std::condition_variable returned_;
   std::vector<std::unique_ptr<PostgresConnection>> idle_;
-  int opened_ = 0;  ///< idle, lent out and being opened
+  std::uint64_t generation_ = 0;  ///< of the connections that were not retired
+  int opened_ = 0;                ///< idle, lent out and being opened
   std::mt19937_64 jitter_;
   std::chrono::milliseconds pause_{};
   Moment not_before_{};

@@ -29,6 +29,8 @@ class PostgresDatabase final : public Database {
   [[nodiscard]] const Clock& clock() const { return clock_ != nullptr ? *clock_ : told_; }
   /// Another number each time: what other daemons changed is not known here, so that no answer may be kept.
   [[nodiscard]] std::uint64_t changes() const override { return changes_.fetch_add(1, std::memory_order_relaxed); }
+  /// Every connection that is there is closed, once it is given back: further work opens another.
+  void retire_connections() { pool_.retire(); }
 
  private:
   [[nodiscard]] Status run_write(WriteKind kind, const std::function<Status(Connection&)>& work) override;

@@ -3,6 +3,7 @@
 #include "server/store/postgres/migrations.hpp"
 #include "server/store/postgres/postgres_coordination.hpp"
 #include "server/store/postgres/postgres_database.hpp"
+#include "server/store/silent_store.hpp"
 
 #include <random>
 
@@ -33,6 +34,21 @@ Result<std::unique_ptr<PostgresConnection>> open_marked(const std::string& uri, 
   return connection;
 }
 
+/// A connection to a database that is still one with which this program may work: who was cut off while that changed
+/// writes nothing more.
+Result<std::unique_ptr<PostgresConnection>> open_of_schema(const ConnectionPool::Opener& open,
+                                                           const std::vector<Migration>& migrations) {
+  auto connection = open();
+  if (connection) {
+    if (const auto schema = require_schema(**connection, migrations); !schema) {
+      return schema.error().code == ErrorCode::Conflict
+                 ? fail(silent_store(schema.error().message, schema.error().fields))
+                 : fail(schema.error());
+    }
+  }
+  return connection;
+}
+
 }  // namespace
 
 PostgresStore::PostgresStore(std::unique_ptr<PostgresDatabase> postgres, PostgresFacts facts,
@@ -43,6 +59,7 @@ PostgresStore::PostgresStore(std::unique_ptr<PostgresDatabase> postgres, Postgre
       clock_(static_cast<const PostgresDatabase&>(database()).clock()),
       facts_(std::move(facts)),
       migrations_(std::move(migrations)),
+      database_schema_(facts_.schema),
       lock_(std::move(lock)),
       coordination_(std::move(coordination)) {}
 
@@ -52,7 +69,20 @@ Status PostgresStore::ping() {
       return held;
     }
   }
-  return database().read([this](Connection& connection) { return require_schema(connection, migrations_); });
+  const auto schema =
+      database().read([this](Connection& connection) { return require_schema(connection, migrations_); });
+  if (schema) {
+    database_schema_ = *schema;
+    return {};
+  }
+  if (schema.error().code == ErrorCode::Conflict) {
+    static_cast<PostgresDatabase&>(database()).retire_connections();
+  }
+  return fail(schema.error());
+}
+
+std::string PostgresStore::newer_schema() const {
+  return told_newer_schema(database_schema_, static_cast<int>(migrations_.size()));
 }
 
 Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& uri, PostgresOptions options) {
@@ -74,7 +104,8 @@ Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& ur
     if (!connection) {
       return fail(connection.error());
     }
-    const auto migrated = migrate(**connection, migrations);
+    const auto migrated = migrate(**connection, migrations,
+                                  lock == nullptr || lock->came_first() || options.lock == DaemonLock::Kind::Alone);
     if (!migrated) {
       return fail(migrated.error());
     }
@@ -86,12 +117,13 @@ Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& ur
     facts = {std::to_string(version / 10000) + "." + std::to_string(version % 10000), (*connection)->name(),
              migrated->from, migrated->to, identity->value_or("")};
   }
+  const ConnectionPool::Opener open_checked = [open, migrations] { return open_of_schema(open, migrations); };
   std::unique_ptr<Coordination> coordination;
   if (options.lock == DaemonLock::Kind::Together) {
-    coordination = std::make_unique<PostgresCoordination>(open, *lock, origin);
+    coordination = std::make_unique<PostgresCoordination>(open_checked, *lock, origin);
   }
   const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
-  auto database = std::make_unique<PostgresDatabase>(open, options.connections, options.clock, seed);
+  auto database = std::make_unique<PostgresDatabase>(open_checked, options.connections, options.clock, seed);
   return std::make_unique<PostgresStore>(std::move(database), std::move(facts), std::move(migrations), std::move(lock),
                                          std::move(coordination), seed, std::move(options.audited));
 }

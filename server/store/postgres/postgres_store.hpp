@@ -12,6 +12,7 @@
 #include "server/store/sql/migration.hpp"
 #include "server/store/sql/sql_store.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,8 +42,8 @@ struct PostgresFacts {
   std::string version;    ///< of the server: "15.18"
   std::string database;   ///< `"driftlab" on db.example:5432`
   int schema_before = 0;  ///< 0: the tables were made now
-  int schema = 0;
-  std::string identity;  ///< a word that no other database has
+  int schema = 0;         ///< of the database now, which may be a newer one
+  std::string identity;   ///< a word that no other database has
 };
 
 class PostgresStore final : public SqlStore {
@@ -57,14 +58,17 @@ class PostgresStore final : public SqlStore {
   /// The coordination of the daemons on one database; nullptr unless the lock is held together. Lives as long as the
   /// store.
   [[nodiscard]] Coordination* coordination() { return coordination_.get(); }
-  /// Also that the database has not been brought to another schema since, nor taken over by another daemon. Errors:
-  /// Conflict; Io.
+  /// Also that the database has not been brought to a schema since with which this program may not work, nor taken over
+  /// by another daemon. Errors: Conflict; Io.
   [[nodiscard]] Status ping() override;
+  /// As the last ping found it.
+  [[nodiscard]] std::string newer_schema() const override;
 
  private:
   const Clock& clock_;
   PostgresFacts facts_;
   std::vector<Migration> migrations_;
+  std::atomic<int> database_schema_;
   std::unique_ptr<DaemonLock> lock_;  ///< nullptr: no lock, other daemons are not kept out
   std::unique_ptr<Coordination> coordination_;
 };

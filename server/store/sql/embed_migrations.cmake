@@ -1,5 +1,6 @@
 # Writes OUTPUT, a C++ file that holds every FOLDER/NNNN_name.sql as text: what FUNCTION, declared in HEADER, returns. Run by the
-# build when a migration changes.
+# build when a migration changes. MORE: further texts behind them, as a later release would have, for tests; @BEFORE@ in one is the number
+# before its own.
 file(GLOB migrations ${FOLDER}/*.sql)
 list(SORT migrations)
 set(entries "")
@@ -19,6 +20,14 @@ foreach(path ${migrations})
   file(READ ${path} text)
   # Square brackets and semicolons mean something to CMake lists, so the text is appended and never listed.
   string(APPEND entries "    {${number}, \"${name}\", R\"driftlab_sql(${text})driftlab_sql\"},\n")
+endforeach()
+foreach(path ${MORE})
+  get_filename_component(name ${path} NAME_WE)
+  math(EXPR before "${expected} - 1")
+  file(READ ${path} text)
+  string(REPLACE "@BEFORE@" ${before} text "${text}")
+  string(APPEND entries "    {${expected}, \"${name}\", R\"driftlab_sql(${text})driftlab_sql\"},\n")
+  math(EXPR expected "${expected} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "// Made by server/store/sql/embed_migrations.cmake.
 #include \"${HEADER}\"

@@ -3,6 +3,8 @@
 #include "server/store/crash_point.hpp"
 #include "server/store/files.hpp"
 
+#include <algorithm>
+
 namespace driftlab::server {
 namespace {
 
@@ -147,8 +149,8 @@ Result<MigrationOutcome> migrate(SqliteConnection& connection, const std::vector
   if (Status agrees = require_user_version(connection, *schema, newest); !agrees) {
     return fail(agrees.error());
   }
-  MigrationOutcome outcome{*schema, newest, {}};
-  if (*schema == newest) {
+  MigrationOutcome outcome{*schema, std::max(*schema, newest), {}};
+  if (*schema >= newest) {
     return outcome;
   }
   if (*schema > 0) {

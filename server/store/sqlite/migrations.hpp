@@ -2,7 +2,8 @@
 /// Forward-only migrations: numbered SQL texts that are embedded in the binary at build time.
 ///
 /// Every applied migration is remembered with the SHA-256 of its text. A database whose history differs from the
-/// binary's texts, or that has migrations the binary does not know, is refused before anything in it is changed.
+/// binary's texts, or that has migrations the binary does not know and may not work beside, is refused before anything
+/// in it is changed.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/sql/migration.hpp"
@@ -22,8 +23,8 @@ namespace driftlab::server {
 inline constexpr std::int64_t kApplicationId = 0x64726674;
 
 struct MigrationOutcome {
-  int from = 0;  ///< schema number found; 0 for a new database
-  int to = 0;
+  int from = 0;                  ///< schema number found; 0 for a new database
+  int to = 0;                    ///< beyond the newest of the binary where that works beside a newer one
   std::filesystem::path backup;  ///< the copy made before; empty where none was needed
 };
 

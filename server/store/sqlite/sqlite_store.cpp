@@ -28,6 +28,8 @@ SqliteStore::SqliteStore(std::unique_ptr<SqliteDatabase> database, SqliteFacts f
                          AuditListener audited)
     : SqlStore(std::move(database), jitter_seed, std::move(audited)), facts_(std::move(facts)) {}
 
+std::string SqliteStore::newer_schema() const { return told_newer_schema(facts_.schema, facts_.schema_of_program); }
+
 Status SqliteStore::copy_to(const std::filesystem::path& target) {
   return static_cast<SqliteDatabase&>(database()).copy_to(target);
 }
@@ -59,6 +61,7 @@ Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::pa
   }
   facts.schema_before = migrated->from;
   facts.schema = migrated->to;
+  facts.schema_of_program = static_cast<int>(migrations.size());
   facts.backup = migrated->backup;
   if (options.max_pages > 0) {
     if (Status limited = (*writer)->execute("PRAGMA max_page_count=" + std::to_string(options.max_pages)); !limited) {

@@ -42,6 +42,7 @@ struct SqliteFacts {
   bool wal_reset_bug_possible = false;  ///< the library has the bug; harmless while only one connection writes
   int schema_before = 0;                ///< 0: the database was made now
   int schema = 0;
+  int schema_of_program = 0;     ///< less than `schema` beside a newer one
   std::filesystem::path backup;  ///< made before migrating; empty where none was needed
   std::filesystem::path database;
   std::int64_t lost_commits = 0;  ///< transactions that were acknowledged and are not there (commit_log.hpp)
@@ -53,6 +54,7 @@ class SqliteStore final : public SqlStore {
               AuditListener audited);
   using SqlStore::database;  // for a copy of every row into another store
   [[nodiscard]] const SqliteFacts& facts() const { return facts_; }
+  [[nodiscard]] std::string newer_schema() const override;
   /// A consistent copy of the database while it is in use (VACUUM INTO from a reader). Errors: DiskFull, Io.
   [[nodiscard]] Status copy_to(const std::filesystem::path& target);
 
@@ -62,7 +64,8 @@ class SqliteStore final : public SqlStore {
 
 /// Opens the store in `directory`, made if absent: takes the lock, refuses network file systems, checks the database's
 /// integrity, migrates it. `clock` must outlive the store.
-/// Errors: Conflict (another daemon has it; schema newer than this binary or with changed migrations); Io; DiskFull.
+/// Errors: Conflict (another daemon has it; schema newer than this binary may work beside, or with changed migrations);
+/// Io; DiskFull.
 [[nodiscard]] Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::path& directory,
                                                                      const Clock& clock, SqliteOptions options = {});
 

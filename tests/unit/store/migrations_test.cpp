@@ -108,6 +108,44 @@ TEST(Migrations, NumbersHaveNoHoles) {
   }
 }
 
+TEST(Migrations, EachSaysInItsFirstLineWhoMayWorkBesideIt) {
+  const auto beside = [](const std::string& sql) { return oldest_beside({30, "name", sql}); };
+  EXPECT_EQ(beside("-- Programs of schema 28 and later may work beside it.\nSELECT 1"), 28);
+  for (const char* const other : {"", "-- No older program may work beside it.\n", "-- Programs of schema 28\n",
+                                  "-- Programs of schema 31 and later may work beside it.\n",
+                                  "-- Programs of schema x and later may work beside it.\n",
+                                  "\n-- Programs of schema 28 and later may work beside it.\n"}) {
+    EXPECT_EQ(beside(other), 30) << other;
+  }
+  for (const Migration& migration : embedded_migrations()) {
+    if (migration.number >= 20) {
+      EXPECT_TRUE(migration.sql.starts_with("-- No older program may work beside it.\n") ||
+                  oldest_beside(migration) < migration.number)
+          << migration.name;
+    }
+  }
+}
+
+TEST(Migrations, AnOlderProgramOpensANewerStoreThatLetsIt) {
+  const TemporaryDirectory directory;
+  Device device;
+  const std::string beside = "-- Programs of schema " + std::to_string(released()) + " and later may work beside it.\n";
+  {
+    const auto newer = open_with(directory.path(), next_release(beside + "ALTER TABLE devices ADD COLUMN owner TEXT"));
+    ASSERT_TRUE(newer) << newer.error().message;
+    EXPECT_EQ((*newer)->newer_schema(), "");
+    device = fill(**newer);
+  }
+  {
+    const auto older = open_with(directory.path(), embedded_migrations());
+    ASSERT_TRUE(older) << older.error().message;
+    EXPECT_THAT((*older)->newer_schema(), HasSubstr("this one works beside it"));
+    expect_filled(**older, device);
+    add_device(**older, "another");
+  }
+  EXPECT_TRUE(open_with(directory.path(), next_release(beside + "ALTER TABLE devices ADD COLUMN owner TEXT")));
+}
+
 TEST(Migrations, FromEachReleasedSchemaWithRowsNothingIsLost) {
   // Migrating starts from every schema that was ever released; rows are written by today's store into the newest only.
   for (int schema = 1; schema <= released(); ++schema) {

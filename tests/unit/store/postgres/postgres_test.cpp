@@ -382,6 +382,74 @@ TEST_F(PostgresStoreTest, AnotherSchemaIsRefusedAtStartAndWhileItRuns) {
   EXPECT_THAT(refusal(uri_).message, HasSubstr("Migration 3"));
 }
 
+std::vector<Migration> next_release(const std::string& sql) {
+  std::vector<Migration> migrations = embedded_postgres_migrations();
+  migrations.push_back({static_cast<int>(migrations.size()) + 1, "next", sql});
+  return migrations;
+}
+
+std::string beside_this_one() {
+  return "-- Programs of schema " + std::to_string(embedded_postgres_migrations().size()) +
+         " and later may work beside it.\n";
+}
+
+TEST_F(PostgresStoreTest, AnOlderProgramWorksBesideAMigrationThatSaysSo) {
+  const auto older = open();
+  const Device device = add_device(*older);
+  EXPECT_EQ(older->newer_schema(), "");
+  PostgresOptions next;
+  next.migrations = next_release(beside_this_one() + "ALTER TABLE devices ADD COLUMN shelf TEXT NOT NULL DEFAULT ''");
+  const auto newer = open(next);
+  ASSERT_NE(newer, nullptr);
+  EXPECT_EQ(newer->newer_schema(), "");
+  EXPECT_TRUE(older->ping());
+  EXPECT_THAT(older->newer_schema(), HasSubstr("of a newer driftlab; this one works beside it"));
+  EXPECT_TRUE(newer->device(add_device(*older, "of the older").id));
+  EXPECT_TRUE(older->device(add_device(*newer, "of the newer").id));
+  const auto another = open();
+  ASSERT_NE(another, nullptr) << "one of the older is started";
+  EXPECT_EQ(another->facts().schema, newer->facts().schema);
+  EXPECT_NE(another->newer_schema(), "");
+  EXPECT_TRUE(another->device(device.id));
+}
+
+TEST_F(PostgresStoreTest, AMigrationThatEndsWhoIsThereWaitsUntilNobodyIs) {
+  PostgresOptions together;
+  together.lock = DaemonLock::Kind::Together;
+  PostgresOptions next = together;
+  next.migrations = next_release("-- No older program may work beside it.\nALTER TABLE devices ADD COLUMN shelf TEXT");
+  {
+    const auto older = open(together);
+    ASSERT_TRUE(older->coordination()->admit_others());
+    const auto refused = open_postgres_store(uri_, next);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::Conflict);
+    EXPECT_THAT(refused.error().message,
+                AllOf(HasSubstr("stop all of them before this driftlab starts"), EndsWith(".")));
+    EXPECT_TRUE(older->ping());
+  }
+  {
+    const auto newer = open(next);
+    ASSERT_NE(newer, nullptr);
+  }
+  EXPECT_THAT(refusal(uri_).message, HasSubstr("use the newer driftlab that wrote it"));
+}
+
+TEST_F(PostgresStoreTest, WhoMayNotWorkWithTheDatabaseAnyMoreWritesNothing) {
+  const auto older = open();
+  const Device device = add_device(*older);
+  PostgresOptions next;
+  next.migrations = next_release("ALTER TABLE devices ADD COLUMN shelf TEXT");
+  const auto newer = open(next);
+  ASSERT_NE(newer, nullptr);
+  EXPECT_FALSE(older->ping());
+  const auto written = older->write_probe();
+  ASSERT_FALSE(written) << "connections from before are used no more";
+  EXPECT_THAT(written.error().message, HasSubstr("by now, and this driftlab works with"));
+  EXPECT_FALSE(older->device(device.id));
+  EXPECT_TRUE(newer->device(device.id));
+}
+
 TEST_F(PostgresStoreTest, AMigrationThatFailsLeavesTheDatabaseAsItWas) {
   PostgresOptions options;
   options.migrations = embedded_postgres_migrations();

@@ -1,0 +1,2 @@
+-- No older program may work beside it.
+ALTER TABLE devices ADD COLUMN owner TEXT;

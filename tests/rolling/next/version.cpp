@@ -1,0 +1,7 @@
+#include "server/program_version.hpp"
+
+namespace driftlab::server {
+
+std::string_view program_version() { return DRIFTLAB_NEXT_VERSION; }
+
+}  // namespace driftlab::server
