@@ -13,33 +13,45 @@ namespace {
 /// ?1 now, ?2 lease end, ?3 longest pause, ?4 ageing step, ?5 jobs of one token that run at once, ?6 what the process
 /// can run, as `can_run` writes it. A job without
 /// failures has nothing to wait for, and nobody has to wait longer than the longest pause: a run_at beyond it was
-/// written before the clock went back. Where several claim at a time each passes over what another one is about to
-/// take.
+/// written before the clock went back.
 ///
-/// `beside`: how many jobs run of the token that asked for it; of several, of the one with the fewest; 0 where nobody
-/// is known. Each puts the token's other jobs one priority back, so that a thousand of one do not stand before the
-/// first of another.
-#define DRIFTLAB_RUNNING_OF_TOKENS                                                                             \
-  "running AS (SELECT token_id, count(*) AS jobs FROM owners JOIN jobs AS busy ON busy.id = owners.object_id " \
-  "WHERE busy.state = 'running' GROUP BY token_id)"
-#define DRIFTLAB_BESIDE                                                                                \
-  "coalesce((SELECT min(coalesce(running.jobs, 0)) FROM owners LEFT JOIN running ON running.token_id " \
-  "= owners.token_id WHERE owners.object_id = jobs.id), 0)"
+/// Jobs that the same tokens asked for with one priority stand in one line, and its first job goes before all others of
+/// it whatever the time is: so only the heads of the lines are compared, however many wait. `beside`: how many jobs run
+/// of the token that asked for those of a line; of several, of the one with the fewest; 0 where nobody is known. Each
+/// puts the token's other jobs one priority back, so that a thousand of one do not stand before the first of another.
+#define DRIFTLAB_LINES                                                                                              \
+  "WITH RECURSIVE running AS (SELECT token_id, count(*) AS jobs FROM owners JOIN jobs AS busy ON busy.id = "        \
+  "owners.object_id WHERE busy.state = 'running' GROUP BY token_id), "                                              \
+  "askers (who) AS (SELECT min(asked_by) FROM jobs WHERE state = 'queued' UNION ALL SELECT (SELECT min(asked_by) "  \
+  "FROM jobs WHERE state = 'queued' AND asked_by > askers.who) FROM askers WHERE who IS NOT NULL), "                \
+  "besides (who, beside) AS MATERIALIZED (SELECT who, coalesce((SELECT min(coalesce(running.jobs, 0)) FROM owners " \
+  "LEFT JOIN "                                                                                                      \
+  "running ON running.token_id = owners.token_id WHERE owners.object_id = (SELECT id FROM jobs WHERE state = "      \
+  "'queued' AND asked_by = who ORDER BY priority, run_at, id LIMIT 1)), 0) FROM askers WHERE who IS NOT NULL), "    \
+  "ranks (rank) AS (VALUES (0), (1), (2), (3), (4), (5), (6), (7), (8), (9)) "
 /// A canonical request begins with its version, for its members are sorted.
 #define DRIFTLAB_CAN_RUN                                                                                         \
   "(?6 = '[]' OR jobs.kind || ' ' || CASE substr(jobs.request_json, 1, 21) WHEN '{\"algorithm_version\":' THEN " \
   "substr(jobs.request_json, 22, CAST(instr(substr(jobs.request_json, 22, 12) || ',', ',') AS INTEGER) - 1) "    \
   "ELSE '0' END IN (SELECT value FROM json_each(?6)))"
-#define DRIFTLAB_NEXT_JOB(LARGER)                                                                           \
-  "WITH " DRIFTLAB_RUNNING_OF_TOKENS                                                                        \
-  " SELECT id FROM jobs WHERE state = 'queued' AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) "     \
-  "AND " DRIFTLAB_BESIDE " < ?5 AND " DRIFTLAB_CAN_RUN " ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER \
-  "(0, ?1 - run_at) / ?4, run_at, id LIMIT 1"
+#define DRIFTLAB_HEAD                                                                                          \
+  "FROM jobs WHERE state = 'queued' AND asked_by = who AND priority = rank AND (run_at <= ?1 OR failures = 0 " \
+  "OR run_at > ?1 + ?3) AND " DRIFTLAB_CAN_RUN " ORDER BY run_at, id LIMIT "
+#define DRIFTLAB_BESIDE "(SELECT beside FROM besides WHERE who = jobs.asked_by)"
+#define DRIFTLAB_BEST(LARGER) \
+  " ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER "(0, ?1 - run_at) / ?4, run_at, id LIMIT 1"
 #define DRIFTLAB_CLAIM(NEXT)                                                                                       \
   "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', " \
   "progress = 0 WHERE id = (" NEXT ") RETURNING " DRIFTLAB_JOB_COLUMNS
-constexpr EngineTexts kClaim{DRIFTLAB_CLAIM(DRIFTLAB_NEXT_JOB("max")),
-                             DRIFTLAB_CLAIM(DRIFTLAB_NEXT_JOB("greatest") " FOR UPDATE OF jobs SKIP LOCKED")};
+/// Where several claim at a time each passes over what another one is about to take: up to 64 at the head of a line.
+constexpr EngineTexts kClaim{
+    DRIFTLAB_CLAIM(DRIFTLAB_LINES "SELECT id FROM jobs WHERE id IN (SELECT (SELECT id " DRIFTLAB_HEAD
+                                  "1) FROM besides CROSS JOIN ranks WHERE beside < ?5)" DRIFTLAB_BEST("max")),
+    DRIFTLAB_CLAIM(
+        DRIFTLAB_LINES
+        "SELECT id FROM jobs WHERE state = 'queued' AND id = ANY (ARRAY (SELECT head.id FROM besides CROSS JOIN "
+        "ranks CROSS JOIN LATERAL (SELECT id " DRIFTLAB_HEAD
+        "64) AS head WHERE beside < ?5))" DRIFTLAB_BEST("greatest") " FOR UPDATE OF jobs SKIP LOCKED")};
 constexpr std::string_view kRenew =
     "UPDATE jobs SET lease_expires_at = ?3 WHERE id = ?1 AND attempt = ?2 AND state = 'running' "
     "RETURNING cancel_requested";
