@@ -27,6 +27,10 @@ struct Kernels {
   double (*third_difference_power)(const double* now, std::size_t m, std::size_t count);
   /// Sum of u (1 - u bound)^4 over the u below 1/bound.
   double (*biweight_sum)(const double* u, std::size_t count, double bound);
+  /// With t = u bound: adds the sums of t, t^2, .. t^5 over the t below 1 to power[0 .. 4], writes the t from 1 up to
+  /// `reach` to `between`, which has room for count + 1, and returns how many these are.
+  std::size_t (*biweight_powers)(const double* u, std::size_t count, double bound, double reach, double* power,
+                                 double* between);
   /// out[i] = (a[i] - 2 b[i] + c[i])^2 scale.
   void (*square_second_differences)(const double* a, const double* b, const double* c, std::size_t count, double scale,
                                     double* out);

@@ -54,6 +54,14 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
       squares[i] = x[i] * x[i];
     }
     EXPECT_EQ(chosen.biweight_sum(squares.data(), count, 0.7), portable.biweight_sum(squares.data(), count, 0.7));
+    std::vector<double> between(count + 1);
+    std::vector<double> portable_between(count + 1);
+    const std::size_t found = chosen.biweight_powers(squares.data(), count, 0.7, 1.5, p.data(), between.data());
+    EXPECT_EQ(portable.biweight_powers(squares.data(), count, 0.7, 1.5, q.data(), portable_between.data()), found);
+    EXPECT_EQ(p, q);
+    between.resize(found);
+    portable_between.resize(found);
+    EXPECT_EQ(between, portable_between);
     chosen.square_second_differences(x.data() + 20, x.data() + 10, x.data(), count, 0.3, a.data());
     portable.square_second_differences(x.data() + 20, x.data() + 10, x.data(), count, 0.3, b.data());
     EXPECT_EQ(a, b);
