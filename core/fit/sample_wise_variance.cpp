@@ -198,16 +198,19 @@ std::vector<double> first_variances(const Work& work, const HaarCovariance& plan
     return variance;
   }
   const WholeWindowScan scan(good);
-  for (std::size_t j = 0; j < variance.size() && !control.stop.stop_requested(); ++j) {
-    const auto half = static_cast<std::size_t>(plan.half()[j]);
-    const std::size_t windows = scan.windows(half);
-    if (windows < 50 || static_cast<double>(windows) / static_cast<double>(good.size() - 2 * half + 1) < 0.1) {
+  std::vector<std::size_t> half;
+  for (std::size_t j = 0; j < variance.size(); ++j) {
+    const auto m = static_cast<std::size_t>(plan.half()[j]);
+    const std::size_t windows = scan.windows(m);
+    if (windows < 50 || static_cast<double>(windows) / static_cast<double>(good.size() - 2 * m + 1) < 0.1) {
       scales = j >= kFewestScales ? j : scales;
       break;
     }
-    if (const auto whole = scan.at(half)) {
-      variance[j] = whole->variance;
-    }
+    half.push_back(m);
+  }
+  const std::vector<std::optional<WholeWindows>> whole = scan.at(half, control);
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    variance[j] = whole[j] ? whole[j]->variance : variance[j];
   }
   return variance;
 }
@@ -344,13 +347,18 @@ class Sampler {
 /// Where gaps are all there is and leave most windows whole, these need no model.
 void prefer_whole_windows(const Work& work, SampleWiseVariance& result) {
   const WholeWindowScan recorded(GappySamples{work.recorded, work.absent});
-  for (std::size_t j = 0; j < result.curve.scales(); ++j) {
-    const auto windows = recorded.at(result.curve.half[j]);
-    if (!windows || windows->share < kMostlyWhole) {
-      return;
+  std::vector<std::size_t> half;
+  for (const std::size_t m : result.curve.half) {
+    const auto share = static_cast<double>(recorded.windows(m)) / static_cast<double>(work.recorded.size() - 2 * m + 1);
+    if (share < kMostlyWhole) {
+      break;
     }
-    result.curve.variance[j] = windows->variance;
-    result.efficiency[j] = windows->share;
+    half.push_back(m);
+  }
+  const std::vector<std::optional<WholeWindows>> windows = recorded.at(half);
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    result.curve.variance[j] = windows[j]->variance;
+    result.efficiency[j] = windows[j]->share;
   }
 }
 
