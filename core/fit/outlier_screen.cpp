@@ -145,22 +145,22 @@ std::size_t best_predictor(std::span<const double> samples) {
   return best;
 }
 
-void mark_patches(const std::vector<double>& residual, std::size_t length, std::vector<std::uint8_t>& patch) {
-  if (residual.size() < 4 * length) {
+/// Marks the windows of `length` residuals whose mean stands out. `clipped`: the residuals in standard deviations,
+/// between -kClip and kClip.
+void mark_patches(const std::vector<double>& clipped, std::size_t length, std::vector<double>& mean,
+                  std::vector<std::uint8_t>& patch) {
+  if (clipped.size() < 4 * length) {
     return;
   }
-  const double sd = robust_sd(residual);
-  if (!(sd > 0.0)) {
-    return;
-  }
-  std::vector<double> mean(residual.size() - length + 1);
+  mean.resize(clipped.size() - length + 1);
   double sum = 0.0;
-  for (std::size_t t = 0; t < residual.size(); ++t) {
-    sum += std::clamp(residual[t] / sd, -kClip, kClip);
-    if (t + 1 >= length) {
-      mean[t + 1 - length] = sum;
-      sum -= std::clamp(residual[t + 1 - length] / sd, -kClip, kClip);
-    }
+  for (std::size_t t = 0; t + 1 < length; ++t) {
+    sum += clipped[t];
+  }
+  for (std::size_t t = 0; t < mean.size(); ++t) {
+    sum += clipped[t + length - 1];
+    mean[t] = sum;
+    sum -= clipped[t];
   }
   const double limit = kPatchLimit * robust_sd(mean);
   for (std::size_t t = 0; t < mean.size(); ++t) {
@@ -170,26 +170,51 @@ void mark_patches(const std::vector<double>& residual, std::size_t length, std::
   }
 }
 
+/// Residuals from the two or, `four`, the four neighbours.
+void neighbour_residuals(std::span<const double> samples, bool four, std::vector<double>& residual) {
+  Predictor predictor(samples);
+  const double* const x = samples.data();
+  const std::size_t reach = std::min<std::size_t>(four ? 2 : 1, samples.size());
+  const std::size_t inner_end = samples.size() > 2 * reach ? samples.size() - reach : reach;
+  if (four) {  // the mean of the middle two, as Predictor::around
+    for (std::size_t t = reach; t < inner_end; ++t) {
+      const double low = std::min(x[t - 2], x[t - 1]);
+      const double high = std::max(x[t - 2], x[t - 1]);
+      const double other_low = std::min(x[t + 1], x[t + 2]);
+      const double other_high = std::max(x[t + 1], x[t + 2]);
+      residual[t] = x[t] - 0.5 * (std::max(low, other_low) + std::min(high, other_high));
+    }
+  } else {
+    for (std::size_t t = reach; t < inner_end; ++t) {
+      residual[t] = x[t] - 0.5 * (x[t - 1] + x[t + 1]);
+    }
+  }
+  for (std::size_t t = 0; t < samples.size(); t = t + 1 == reach ? std::max(inner_end, reach) : t + 1) {
+    residual[t] = x[t] - (four ? predictor.around(t, 2) : predictor.neighbours(t));
+  }
+}
+
 }  // namespace
 
 OutlierScreen screen_outliers(std::span<const double> samples, const RunControl& control) {
   OutlierScreen screen;
   screen.patch.assign(samples.size(), 0);
   std::vector<double> residual = median_residuals(samples, kReaches.back(), control);
-  for (const std::size_t length : {std::size_t{8}, std::size_t{20}}) {
-    if (!control.stop.stop_requested()) {
-      mark_patches(residual, length, screen.patch);
+  if (const double sd = robust_sd(residual); sd > 0.0 && !control.stop.stop_requested()) {
+    std::vector<double> clipped(residual.size());
+    for (std::size_t t = 0; t < residual.size(); ++t) {
+      clipped[t] = std::clamp(residual[t] / sd, -kClip, kClip);
+    }
+    std::vector<double> mean;
+    for (const std::size_t length : {std::size_t{8}, std::size_t{20}}) {
+      if (!control.stop.stop_requested()) {
+        mark_patches(clipped, length, mean, screen.patch);
+      }
     }
   }
   const std::size_t best = best_predictor(samples);
   if (best < 2) {
-    Predictor predictor(samples);
-    for (std::size_t t = 0; t < samples.size(); ++t) {
-      if (t % kPoll == 0 && control.stop.stop_requested()) {
-        break;
-      }
-      residual[t] = samples[t] - (best == 0 ? predictor.neighbours(t) : predictor.around(t, 2));
-    }
+    neighbour_residuals(samples, best == 1, residual);
   } else if (best < 1 + kReaches.size()) {
     residual = median_residuals(samples, kReaches[best - 2], control);
   }

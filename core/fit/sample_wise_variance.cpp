@@ -110,7 +110,7 @@ class ModelFitter {
   Eigen::VectorXd sd_;  ///< of the wavelet variances under the last fit
 };
 
-/// The record in units of its robust spread around its median, and the present state of every sample.
+/// The record in units of its robust spread around a level near its median, and the present state of every sample.
 struct Work {
   double unit = 1.0;
   double pivot = 0.0;
@@ -131,39 +131,55 @@ std::uint8_t size_state(const OutlierMixture& mixture, double magnitude) {
   return static_cast<std::uint8_t>(k + 1);
 }
 
+/// About the median of the recorded samples.
+double rough_median(std::span<const double> recorded) {
+  constexpr std::size_t kLooks = 65536;
+  const std::size_t stride = std::max<std::size_t>(1, recorded.size() / kLooks);
+  std::vector<double> few;
+  few.reserve(recorded.size() / stride + 1);
+  for (std::size_t i = 0; i < recorded.size(); i += stride) {
+    few.push_back(recorded[i]);
+  }
+  const auto middle = few.begin() + static_cast<std::ptrdiff_t>(few.size() / 2);
+  std::nth_element(few.begin(), middle, few.end());
+  return *middle;
+}
+
 /// Screens the record; false if it has no spread.
 bool prepare(const GappySamples& samples, bool look, Work& work, const RunControl& control) {
-  std::vector<double> there;
-  std::vector<std::size_t> place;
-  for (std::size_t t = 0; t < samples.size(); ++t) {
-    if (!samples.is_missing(t)) {
-      there.push_back(samples.values[t]);
-      place.push_back(t);
+  std::vector<double> packed;
+  if (!samples.missing.empty()) {
+    packed.reserve(samples.size());
+    for (std::size_t t = 0; t < samples.size(); ++t) {
+      if (!samples.is_missing(t)) {
+        packed.push_back(samples.values[t]);
+      }
     }
   }
+  const std::span<const double> there = samples.missing.empty() ? std::span(samples.values) : std::span(packed);
   const OutlierScreen screen = screen_outliers(there, control);
   if (!(screen.sd > 0.0) || !std::isfinite(1.0 / screen.sd)) {
     return false;
   }
   work.unit = screen.sd;
-  auto middle = there.begin() + static_cast<std::ptrdiff_t>(there.size() / 2);
-  std::vector<double> sorted = there;
-  std::nth_element(sorted.begin(), sorted.begin() + (middle - there.begin()), sorted.end());
-  work.pivot = sorted[there.size() / 2];
+  work.pivot = rough_median(there);
   work.recorded.assign(samples.size(), 0.0);
   work.state.assign(samples.size(), kAbsentSample);
   work.patch.assign(samples.size(), 0);
   work.absent.assign(samples.size(), 1);
-  ResidualHistogram histogram;
-  for (const float residual : screen.residual) {
-    histogram.add(std::fabs(static_cast<double>(residual)));
-  }
   if (look) {
+    ResidualHistogram histogram;
+    for (const float residual : screen.residual) {
+      histogram.add(std::fabs(static_cast<double>(residual)));
+    }
     work.mixture = OutlierMixture::up_to(histogram.largest());
     work.mixture.refine(histogram, kFirstSteps);
   }
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    const std::size_t t = place[i];
+  std::size_t i = 0;
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    if (samples.is_missing(t)) {
+      continue;
+    }
     work.recorded[t] = (there[i] - work.pivot) / work.unit;
     work.state[t] = kGoodSample;
     work.absent[t] = 0;
@@ -175,6 +191,7 @@ bool prepare(const GappySamples& samples, bool look, Work& work, const RunContro
     } else if (look && magnitude > kSuspect) {
       work.state[t] = size_state(work.mixture, magnitude);
     }
+    ++i;
   }
   return true;
 }
@@ -185,6 +202,7 @@ std::vector<double> first_variances(const Work& work, const HaarCovariance& plan
                                     const RunControl& control) {
   GappySamples good{work.recorded, std::vector<std::uint8_t>(work.state.size())};
   std::vector<double> closed;
+  closed.reserve(work.state.size());
   for (std::size_t t = 0; t < good.missing.size(); ++t) {
     good.missing[t] = work.state[t] == kGoodSample ? 0 : 1;
     if (good.missing[t] == 0) {
