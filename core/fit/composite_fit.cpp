@@ -3,6 +3,7 @@
 #include "core/fit/discrepancy.hpp"
 #include "core/process/dense.hpp"
 #include "core/process/model.hpp"
+#include "core/variance/kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,8 @@ struct CompositeDistance::Columns {
   };
   std::vector<Known> known;
   std::size_t settled = 0;  ///< components whose slopes nobody asks for
+  Eigen::MatrixXd raw;      ///< ln of the curve less that of the model, then its derivatives
+  Eigen::MatrixXd whitened;
 
   const LogColumn& of(const CompositeBasis& basis, const Component& component, std::size_t c, bool slopes) {
     known.resize(std::max(known.size(), c + 1));
@@ -104,13 +107,11 @@ void CompositeDistance::evaluate(const Composite& model, const std::optional<Com
   const Eigen::Index zero = basis_->table().scales();  // the row of the density at frequency 0
   const auto parameters = static_cast<Eigen::Index>(parameter_count(*basis_, model));
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(rows);
-  Eigen::MatrixXd slope;
   Eigen::RowVectorXd held_slope = Eigen::RowVectorXd::Zero(parameters);
   double held = 0.0;
-  if (slopes) {
-    slope.resize(rows, parameters);
-  }
-  Eigen::Index k = 0;
+  Eigen::MatrixXd& raw = columns.raw;
+  raw.resize(rows, 1 + (slopes ? parameters : 0));
+  Eigen::Index k = 1;
   for (std::size_t c = 0; c < model.size(); ++c) {
     const LogColumn& column = columns.of(*basis_, model[c], c, slopes);
     const Eigen::VectorXd share = (column.value(used_).array() + model[c].log_square).exp();
@@ -119,28 +120,36 @@ void CompositeDistance::evaluate(const Composite& model, const std::optional<Com
     const double level = of ? contribution(*of, model[c], column.value(zero)) : 0.0;
     held += level;
     if (slopes) {
-      slope.col(k) = share;
-      held_slope(k) = level;
+      raw.col(k) = share;
+      held_slope(k - 1) = level;
       for (std::size_t s = 0; s < basis_->kinds()[model[c].kind].shapes(); ++s) {
         const auto place = k + 1 + static_cast<Eigen::Index>(s);
         if (c < columns.settled) {
-          slope.col(place).setZero();
+          raw.col(place).setZero();
           continue;
         }
-        slope.col(place) = share.cwiseProduct(column.slope[s](used_));
-        held_slope(place) = of == Of::Density ? level * column.slope[s](zero) : of == Of::Walk && s == 0 ? level : 0.0;
+        raw.col(place) = share.cwiseProduct(column.slope[s](used_));
+        held_slope(place - 1) = of == Of::Density          ? level * column.slope[s](zero)
+                                : of == Of::Walk && s == 0 ? level
+                                                           : 0.0;
       }
     }
     k += 1 + static_cast<Eigen::Index>(basis_->kinds()[model[c].kind].shapes());
   }
   const Eigen::Index all = rows + (constraint ? 1 : 0);
+  raw.col(0) = y_.array() - sum.array().log();
+  for (Eigen::Index p = 1; p < raw.cols(); ++p) {
+    raw.col(p).array() /= -sum.array();
+  }
+  columns.whitened.resize(rows, raw.cols());
+  kernels().lower_product(whitening_.data(), static_cast<std::size_t>(rows), raw.data(),
+                          static_cast<std::size_t>(raw.cols()), columns.whitened.data());
   point.residual.resize(all);
-  point.residual.head(rows) = whitening_.triangularView<Eigen::Lower>() * (y_ - sum.array().log().matrix()).eval();
+  point.residual.head(rows) = columns.whitened.col(0);
   point.distance = point.residual.head(rows).squaredNorm();
   if (slopes) {
     point.jacobian.resize(all, parameters);
-    const Eigen::MatrixXd relative = -(sum.cwiseInverse().asDiagonal() * slope);
-    point.jacobian.topRows(rows) = whitening_.triangularView<Eigen::Lower>() * relative;
+    point.jacobian.topRows(rows) = columns.whitened.rightCols(parameters);
   }
   if (constraint) {
     point.residual(rows) = kHold * (std::log(held) - constraint->value);
@@ -249,8 +258,11 @@ double CompositeDistance::minimise(Composite& model, const std::optional<Composi
   double damping = 1e-3;
   Composite trial = model;
   Point next;
+  Eigen::MatrixXd normal;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Eigen::MatrixXd normal = point.jacobian.transpose() * point.jacobian;
+    normal.resize(point.jacobian.cols(), point.jacobian.cols());
+    kernels().gram(point.jacobian.data(), static_cast<std::size_t>(point.jacobian.rows()),
+                   static_cast<std::size_t>(point.jacobian.cols()), normal.data());
     Eigen::VectorXd gradient = point.jacobian.transpose() * point.residual;
     // A shape that stands at an end of its range and would leave it is held there.
     Eigen::Index k = 0;

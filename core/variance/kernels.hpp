@@ -31,6 +31,10 @@ struct Kernels {
   /// `reach` to `between`, which has room for count + 1, and returns how many these are.
   std::size_t (*biweight_powers)(const double* u, std::size_t count, double bound, double reach, double* power,
                                  double* between);
+  /// out = lower right, column after column: rows x rows, zero above the diagonal, times rows x columns.
+  void (*lower_product)(const double* lower, std::size_t rows, const double* right, std::size_t columns, double* out);
+  /// out = a' a of a rows x columns matrix, column after column.
+  void (*gram)(const double* a, std::size_t rows, std::size_t columns, double* out);
   /// out[i] = (a[i] - 2 b[i] + c[i])^2 scale.
   void (*square_second_differences)(const double* a, const double* b, const double* c, std::size_t count, double scale,
                                     double* out);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace driftlab {
@@ -65,6 +68,35 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
     chosen.square_second_differences(x.data() + 20, x.data() + 10, x.data(), count, 0.3, a.data());
     portable.square_second_differences(x.data() + 20, x.data() + 10, x.data(), count, 0.3, b.data());
     EXPECT_EQ(a, b);
+  }
+  for (const std::size_t rows : {1U, 7U, 8U, 9U, 19U, 40U}) {
+    std::vector<double> lower(rows * rows, 0.0);
+    for (std::size_t c = 0; c < rows; ++c) {
+      std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(50 * c), rows - c,
+                  lower.begin() + static_cast<std::ptrdiff_t>(c * rows + c));
+    }
+    for (const std::size_t columns : {1U, 2U, 3U, 4U, 11U}) {
+      std::vector<double> p(rows * columns, 0.0);
+      std::vector<double> q(rows * columns, 0.0);
+      chosen.lower_product(lower.data(), rows, x.data() + 2000, columns, p.data());
+      portable.lower_product(lower.data(), rows, x.data() + 2000, columns, q.data());
+      EXPECT_EQ(p, q);
+      for (std::size_t i = 0; i < rows; ++i) {
+        double sum = 0.0;
+        for (std::size_t c = 0; c <= i; ++c) {
+          sum += lower[c * rows + i] * x[2000 + (columns - 1) * rows + c];
+        }
+        EXPECT_EQ(p[(columns - 1) * rows + i], sum) << rows << " x " << columns;
+      }
+      std::vector<double> g(columns * columns);
+      std::vector<double> h(columns * columns);
+      chosen.gram(x.data(), rows, columns, g.data());
+      portable.gram(x.data(), rows, columns, h.data());
+      EXPECT_EQ(g, h);
+      EXPECT_NEAR(g.back(),
+                  std::inner_product(&x[(columns - 1) * rows], &x[columns * rows], &x[(columns - 1) * rows], 0.0),
+                  1e-12 * g.back());
+    }
   }
   const std::vector<std::uint16_t> pairs{0, 3, 1, 2, 0, 1, 2, 3, 1, 2};
   std::vector<double> a(x.begin(), x.begin() + 4 * kWindowsAtOnce);
