@@ -148,6 +148,11 @@ int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved) {
                ? 2
                : 1;
   }
+  if (moved->tables == 0) {
+    std::printf("copied ahead: %lld recordings, %lld of them in this run\n", static_cast<long long>(moved->blobs),
+                static_cast<long long>(moved->new_blobs));
+    return 0;
+  }
   std::printf("moved: %lld rows of %d tables and %lld recordings, %lld and %lld of them in this run; all compared\n",
               static_cast<long long>(moved->rows), moved->tables, static_cast<long long>(moved->blobs),
               static_cast<long long>(moved->new_rows), static_cast<long long>(moved->new_blobs));
@@ -180,14 +185,15 @@ int main(int argc, char** argv) {
   CLI::App* const restored = app.add_subcommand("restore", "Make --data, which must not be there, from a backup");
   std::string from;
   restored->add_option("--from", from, "Directory that `driftlabd backup` made")->required();
-  CLI::App* const migrate =
-      app.add_subcommand("migrate", "Move a lab whose daemons are stopped between --data and a PostgreSQL database");
+  CLI::App* const migrate = app.add_subcommand("migrate", "Move a lab between --data and a PostgreSQL database");
   std::string move_from;
   std::string move_to;
   migrate->add_option("--from", move_from, "Directory of an SQLite store, or postgresql://... of a database")
       ->required();
   migrate->add_option("--to", move_to, "The other of the two; empty, or what an earlier run has moved so far")
       ->required();
+  bool ahead = false;
+  migrate->add_flag("--ahead", ahead, "Copy the recordings alone, while the daemons of --from go on");
   const CLI::App* const worker = app.add_subcommand(
       "worker", "Work on the jobs of --store, without an API; --listen answers /healthz, /readyz and /metrics");
   bool json = false;
@@ -225,7 +231,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (migrate->parsed()) {
-    return tell_moved(driftlab::server::move_store(settings, move_from, move_to));
+    return tell_moved(ahead ? driftlab::server::move_recordings_ahead(settings, move_from, move_to)
+                            : driftlab::server::move_store(settings, move_from, move_to));
   }
   if (check->parsed()) {
     return tell("checked", driftlab::server::check_data(settings.data));

@@ -1,15 +1,14 @@
 #include "server/move_store.hpp"
 
+#include "server/move_blobs.hpp"
 #include "server/move_rows.hpp"
 #include "server/open_store.hpp"
-#include "server/store/checksums.hpp"
 #include "server/store/files.hpp"
 
-#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <span>
-#include <system_error>
+#include <optional>
 #include <vector>
 
 namespace driftlab::server {
@@ -17,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPieceBytes = 1U << 20U;
+constexpr const char* kAheadFile = "moved-ahead";
 
 bool is_database(const std::string& place) {
   return place.starts_with("postgresql://") || place.starts_with("postgres://");
@@ -29,12 +28,13 @@ struct Side {
   std::unique_ptr<BlobStore> blobs;
 };
 
-Result<Side> open_side(const Settings& settings, const Clock& clock) {
+/// `beside_others`: daemons and workers may go on with it.
+Result<Side> open_side(const Settings& settings, const Clock& clock, bool beside_others = false) {
   auto store = open_store(settings, clock);
   if (!store) {
     return fail(store.error());
   }
-  if (store->others != nullptr && !store->others->came_first()) {
+  if (!beside_others && store->others != nullptr && !store->others->came_first()) {
     return fail(ErrorCode::Conflict, "Daemons or workers work with the database; stop them before it is moved.",
                 {{"parameter", "store"}});
   }
@@ -66,93 +66,131 @@ Status begin_or_go_on(const fs::path& mark, const std::string& what, Database& t
   return write_secret_file(mark, what + "\n");
 }
 
-bool is_sound(const BlobStore& blobs, const std::string& sha256) {
-  const auto bytes = check_bytes(blobs.bytes_path(sha256), sha256);
-  const auto columns = check_columns(blobs.columns_path(sha256));
-  return bytes && columns && *bytes == FileState::Sound && *columns == FileState::Sound;
-}
+/// What a move is from and to.
+struct Plan {
+  Settings of_directory;
+  Settings of_database;
+  bool to_database = true;
+  fs::path mark;
+  std::string what;  ///< `to postgresql://... database`
+};
 
-Status append_file(IncomingBlob& target, const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::vector<char> piece(kPieceBytes);
-  while (stream) {
-    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    const auto got = static_cast<std::size_t>(stream.gcount());
-    if (Status appended = target.append(std::as_bytes(std::span(piece.data(), got))); !appended) {
-      return appended;
-    }
-  }
-  return target.seal();
-}
-
-Status duplicate(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-  return error ? Status(fail(file_error(error.value(), "copy", from))) : Status{};
-}
-
-Status copy_blob(const BlobStore& from, BlobStore& to, const std::string& sha256) {
-  if (!is_sound(from, sha256)) {
-    return fail(ErrorCode::Io,
-                "The recording " + sha256 + " is damaged where it is; heal it (driftlabd check) before it is moved.",
-                {{"blob", sha256}});
-  }
-  auto incoming = to.begin();
-  if (!incoming) {
-    return fail(incoming.error());
-  }
-  if (Status appended = append_file(**incoming, from.bytes_path(sha256)); !appended) {
-    return appended;
-  }
-  const fs::path columns = from.columns_path(sha256);
-  if (Status copied = duplicate(columns, (*incoming)->columns_path()); !copied) {
-    return copied;
-  }
-  std::error_code none;
-  if (fs::exists(pyramid_path(columns), none)) {
-    if (Status copied = duplicate(pyramid_path(columns), pyramid_path((*incoming)->columns_path())); !copied) {
-      return copied;
-    }
-  }
-  if (Status kept = (*incoming)->keep(); !kept) {
-    return kept;
-  }
-  return is_sound(to, sha256)
-             ? Status{}
-             : fail(ErrorCode::Io, "The recording " + sha256 + " was not copied as it is.", {{"blob", sha256}});
-}
-
-}  // namespace
-
-Result<MovedStore> move_store(const Settings& settings, const std::string& from, const std::string& to) {
+Result<Plan> plan(const Settings& settings, const std::string& from, const std::string& to) {
   if (is_database(from) == is_database(to)) {
     return fail(ErrorCode::InvalidArgument,
                 "A lab is moved from a directory to postgresql://USER@HOST/DATABASE or back; name one of each.",
                 {{"parameter", "from"}});
   }
-  Settings of_directory = settings;
-  of_directory.store.clear();
-  of_directory.blobs.clear();
-  of_directory.data = is_database(from) ? to : from;
-  Settings of_database = settings;
-  of_database.store = is_database(from) ? from : to;
-  of_database.serves_api = true;
-  const fs::path mark = of_directory.data / kMovingFile;
-  const std::string what =
-      (is_database(from) ? "from " : "to ") + without_password(of_database.store) + " " + settings.blobs;
+  Plan made{settings, settings, is_database(to), {}, {}};
+  made.of_directory.store.clear();
+  made.of_directory.blobs.clear();
+  made.of_directory.data = made.to_database ? from : to;
+  made.of_directory.is_moving = true;
+  made.of_database.store = made.to_database ? to : from;
+  made.of_database.serves_api = true;
+  made.mark = made.of_directory.data / kMovingFile;
+  made.what = (made.to_database ? "to " : "from ") + without_password(made.of_database.store) + " " + settings.blobs;
+  return made;
+}
+
+AheadList ahead_list(const Plan& plan, const Side& target) {
+  return {plan.of_directory.data / kAheadFile, plan.what + " " + target.store.identity};
+}
+
+/// Copies what of `hashes` is not there; `passes_over_damaged`: what is damaged or gone at its source is not missed.
+Status copy_blobs(const std::vector<std::string>& hashes, const BlobFiles& from, BlobStore& to, AheadList& ahead,
+                  bool passes_over_damaged, MovedStore& moved) {
+  const auto there = to.hashes_older_than(std::chrono::microseconds(0));
+  if (!there) {
+    return fail(there.error());
+  }
+  ahead.keep(*there);
+  for (const std::string& sha256 : hashes) {
+    ++moved.blobs;
+    if (ahead.holds(sha256)) {
+      continue;
+    }
+    if (!is_sound(files_of(to), sha256)) {
+      if (passes_over_damaged && !is_sound(from, sha256)) {
+        --moved.blobs;
+        continue;
+      }
+      if (Status copied = copy_blob(from, to, sha256); !copied) {
+        return copied;
+      }
+      ++moved.new_blobs;
+    }
+    if (Status noted = ahead.add(sha256); !noted) {
+      return noted;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::string& from, const std::string& to) {
+  const auto planned = plan(settings, from, to);
+  if (!planned) {
+    return fail(planned.error());
+  }
+  if (is_there(planned->mark)) {
+    return fail(ErrorCode::Conflict, "The store is being moved already; end that without --ahead.",
+                {{"parameter", "from"}});
+  }
   const SystemClock clock;
-  of_directory.is_moving = true;
-  auto directory = open_side(of_directory, clock);
+  const fs::path& directory = planned->of_directory.data;
+  if (planned->to_database && !is_there(directory / kSqliteFile)) {
+    return fail(ErrorCode::NotFound, "There is no database in " + directory.string() + ".", {{"parameter", "from"}});
+  }
+  std::optional<Side> source;
+  if (!planned->to_database) {
+    auto opened = open_side(planned->of_database, clock, true);
+    if (!opened) {
+      return fail(opened.error());
+    }
+    source = std::move(*opened);
+  }
+  auto target = open_side(planned->to_database ? planned->of_database : planned->of_directory, clock);
+  if (!target) {
+    return fail(target.error());
+  }
+  const auto empty = has_no_rows(*target->store.database);
+  if (!empty || !*empty) {
+    return !empty
+               ? Result<MovedStore>(fail(empty.error()))
+               : fail(ErrorCode::Conflict, "The target holds rows already; name an empty one.", {{"parameter", "to"}});
+  }
+  const auto hashes = source ? source->store.store->blob_hashes() : hashes_in(directory);
+  if (!hashes) {
+    return fail(hashes.error());
+  }
+  MovedStore moved;
+  AheadList ahead = ahead_list(*planned, *target);
+  const BlobFiles files = source ? files_of(*source->blobs) : files_in(directory);
+  if (Status copied = copy_blobs(*hashes, files, *target->blobs, ahead, true, moved); !copied) {
+    return fail(copied.error());
+  }
+  return moved;
+}
+
+Result<MovedStore> move_store(const Settings& settings, const std::string& from, const std::string& to) {
+  const auto planned = plan(settings, from, to);
+  if (!planned) {
+    return fail(planned.error());
+  }
+  const SystemClock clock;
+  auto directory = open_side(planned->of_directory, clock);
   if (!directory) {
     return fail(directory.error());
   }
-  auto database = open_side(of_database, clock);
+  auto database = open_side(planned->of_database, clock);
   if (!database) {
     return fail(database.error());
   }
-  Side& source = is_database(from) ? *database : *directory;
-  Side& target = is_database(from) ? *directory : *database;
-  if (Status begun = begin_or_go_on(mark, what, *target.store.database); !begun) {
+  Side& source = planned->to_database ? *directory : *database;
+  Side& target = planned->to_database ? *database : *directory;
+  if (Status begun = begin_or_go_on(planned->mark, planned->what, *target.store.database); !begun) {
     return fail(begun.error());
   }
   const auto hashes = source.store.store->blob_hashes();
@@ -161,15 +199,9 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   }
   MovedStore moved;
   moved.tables = static_cast<int>(moved_tables().size());
-  for (const std::string& sha256 : *hashes) {
-    ++moved.blobs;
-    if (is_sound(*target.blobs, sha256)) {
-      continue;
-    }
-    if (Status copied = copy_blob(*source.blobs, *target.blobs, sha256); !copied) {
-      return fail(copied.error());
-    }
-    ++moved.new_blobs;
+  AheadList ahead = ahead_list(*planned, target);
+  if (Status copied = copy_blobs(*hashes, files_of(*source.blobs), *target.blobs, ahead, false, moved); !copied) {
+    return fail(copied.error());
   }
   const auto rows = copy_rows(*source.store.database, *target.store.database);
   if (!rows) {
@@ -180,7 +212,10 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   if (Status same = compare_rows(*source.store.database, *target.store.database); !same) {
     return fail(same.error());
   }
-  if (Status ended = remove_file(mark); !ended) {
+  if (Status forgotten = ahead.remove(); !forgotten) {
+    return fail(forgotten.error());
+  }
+  if (Status ended = remove_file(planned->mark); !ended) {
     return fail(ended.error());
   }
   return moved;

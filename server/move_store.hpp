@@ -26,6 +26,12 @@ struct MovedStore {
 /// rows; what was copied is not the same); those of the stores.
 [[nodiscard]] Result<MovedStore> move_store(const Settings& settings, const std::string& from, const std::string& to);
 
+/// Copies the recordings alone, while daemons and workers go on with the source: the move itself then takes what came
+/// after, and is sooner over. May be run again at any time before that. What is damaged at the source is passed over.
+/// Errors: as move_store; NotFound (no store in the directory).
+[[nodiscard]] Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::string& from,
+                                                       const std::string& to);
+
 /// The file that says that a store is being moved.
 constexpr const char* kMovingFile = "moving";
 

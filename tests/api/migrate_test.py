@@ -103,6 +103,48 @@ class Migrate(unittest.TestCase):
                     self.assertEqual(daemon.terminate(), 0)
                 self.assertEqual(subprocess.run([daemons.PROGRAM, "check", "--data", str(back)], capture_output=True).returncode, 0)
 
+    def test_recordings_go_ahead_while_the_daemons_work(self) -> None:
+        self.fill()
+        files = sorted(path for path in (self.data / "blobs").rglob("*") if path.is_file())
+        local, back = self.folder / "local", self.folder / "back"
+        more = ("--blobs", "database", "--data", str(local))
+        with Daemon(self.data) as daemon:
+            daemon.token = self.token
+            self.assertIn("uses the directory", self.migrate(self.data, self.store, *more).stderr, "the move itself needs it alone")
+            ran = self.migrate(self.data, self.store, *more, "--ahead")
+            self.assertEqual((ran.returncode, ran.stdout), (0, "copied ahead: 3 recordings, 3 of them in this run\n"), ran.stderr)
+            made = daemon.upload(samples.gyro_csv(4096, seed=7), rate_hz=100, columns=samples.GYRO_Z, condition="static")
+            self.assertEqual(made.status, 201, made.describe())
+            self.assertIn("4 recordings, 1 of them", self.migrate(self.data, self.store, *more, "--ahead").stdout)
+            self.assertEqual(daemon.upload(samples.gyro_csv(4096, seed=8), rate_hz=100, columns=samples.GYRO_Z).status, 201)
+            before = self.everything(daemon)
+            self.assertEqual(daemon.terminate(), 0)
+        self.assertRegex(self.moved(self.data, self.store, *more), r"and 5 recordings, \d+ and 1 of them")
+        self.assertFalse((self.data / "moved-ahead").exists())
+        self.assertLessEqual(set(files), set((self.data / "blobs").rglob("*")), "the source stays as it is")
+        with Daemon(local, arguments=("--store", self.store, "--blobs", "database")) as daemon:
+            daemon.token = self.token
+            self.assertEqual(self.everything(daemon), before)
+            third = ("--blobs", "database", "--data", str(self.folder / "third"))
+            self.assertIn("stop them", self.migrate(self.data, self.store, *third, "--ahead").stderr, "a target that is at work")
+            ran = self.migrate(self.store, back, "--blobs", "database", "--data", str(self.folder / "copies"), "--ahead")
+            self.assertIn("5 recordings, 5 of them", ran.stdout, ran.stderr)
+            self.assertEqual(daemon.terminate(), 0)
+        self.assertRegex(self.moved(self.store, back, *more), r"and 5 recordings, \d+ and 0 of them")
+        with Daemon(back) as daemon:
+            daemon.token = self.token
+            self.assertEqual(self.everything(daemon), before)
+
+    def test_what_was_copied_ahead_to_another_target_is_not_believed(self) -> None:
+        self.fill()
+        more = ("--blobs", "database", "--data", str(self.folder / "local"))
+        self.assertIn("3 of them", self.migrate(self.data, self.store, *more, "--ahead").stdout)
+        cluster = postgres.cluster()
+        schema = cluster.schema_of(self.folder)
+        cluster.sql(f"DROP SCHEMA {schema} CASCADE; CREATE SCHEMA {schema}")
+        shutil.rmtree(self.folder / "local")
+        self.assertRegex(self.moved(self.data, self.store, *more), r"and 3 recordings, \d+ and 3 of them")
+
     def test_a_move_that_was_killed_goes_on(self) -> None:
         self.fill()
         arguments = ("--blobs", "database", "--data", str(self.folder / "local"))
