@@ -139,9 +139,9 @@ Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::st
                 {{"parameter", "from"}});
   }
   const SystemClock clock;
-  const fs::path& directory = planned->of_directory.data;
-  if (planned->to_database && !is_there(directory / kSqliteFile)) {
-    return fail(ErrorCode::NotFound, "There is no database in " + directory.string() + ".", {{"parameter", "from"}});
+  const fs::path& data = planned->of_directory.data;
+  if (planned->to_database && !is_there(data / kSqliteFile)) {
+    return fail(ErrorCode::NotFound, "There is no database in " + data.string() + ".", {{"parameter", "from"}});
   }
   std::optional<Side> source;
   if (!planned->to_database) {
@@ -161,13 +161,13 @@ Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::st
                ? Result<MovedStore>(fail(empty.error()))
                : fail(ErrorCode::Conflict, "The target holds rows already; name an empty one.", {{"parameter", "to"}});
   }
-  const auto hashes = source ? source->store.store->blob_hashes() : hashes_in(directory);
+  const auto hashes = source ? source->store.store->blob_hashes() : hashes_in(data);
   if (!hashes) {
     return fail(hashes.error());
   }
   MovedStore moved;
   AheadList ahead = ahead_list(*planned, *target);
-  const BlobFiles files = source ? files_of(*source->blobs) : files_in(directory);
+  const BlobFiles files = source ? files_of(*source->blobs) : files_in(data);
   if (Status copied = copy_blobs(*hashes, files, *target->blobs, ahead, true, moved); !copied) {
     return fail(copied.error());
   }
@@ -180,9 +180,9 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
     return fail(planned.error());
   }
   const SystemClock clock;
-  auto directory = open_side(planned->of_directory, clock);
-  if (!directory) {
-    return fail(directory.error());
+  auto data = open_side(planned->of_directory, clock);
+  if (!data) {
+    return fail(data.error());
   }
   auto database = open_side(planned->of_database, clock);
   if (!database) {
