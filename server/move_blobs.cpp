@@ -4,7 +4,6 @@
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <span>
 #include <system_error>
@@ -44,25 +43,24 @@ BlobFiles files_of(const BlobStore& blobs) {
 }
 
 BlobFiles files_in(const fs::path& root) {
-  return {[root](const std::string& sha256) { return root / "blobs" / sha256.substr(0, 2) / sha256; },
-          [root](const std::string& sha256) { return root / "columns" / sha256.substr(0, 2) / (sha256 + ".columns"); }};
+  return {[root](const std::string& sha256) { return bytes_below(root, sha256); },
+          [root](const std::string& sha256) { return columns_below(root, sha256); }};
 }
 
 Result<std::vector<std::string>> hashes_in(const fs::path& root) {
-  std::vector<std::string> hashes;
+  std::set<std::string> hashes;
   std::error_code error;
   fs::recursive_directory_iterator entry(root / "blobs", error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     std::string name = entry->path().filename().string();
     if (is_sha256_hex(name)) {
-      hashes.push_back(std::move(name));
+      hashes.insert(std::move(name));
     }
   }
   if (error) {
     return fail(file_error(error.value(), "list", root / "blobs"));
   }
-  std::sort(hashes.begin(), hashes.end());
-  return hashes;
+  return std::vector(hashes.begin(), hashes.end());
 }
 
 bool is_sound(const BlobFiles& files, const std::string& sha256) {

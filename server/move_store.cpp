@@ -180,9 +180,9 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
     return fail(planned.error());
   }
   const SystemClock clock;
-  auto data = open_side(planned->of_directory, clock);
-  if (!data) {
-    return fail(data.error());
+  auto directory = open_side(planned->of_directory, clock);
+  if (!directory) {
+    return fail(directory.error());
   }
   auto database = open_side(planned->of_database, clock);
   if (!database) {

@@ -70,12 +70,8 @@ class BlobDirectory final : public BlobStore {
       : root_(std::move(root)), incoming_(std::move(incoming)), shared_(std::move(names)), locks_(std::move(locks)) {}
 
   [[nodiscard]] Result<std::unique_ptr<IncomingBlob>> begin() override;
-  [[nodiscard]] fs::path bytes_path(std::string_view sha256) const override {
-    return root_ / "blobs" / sha256.substr(0, 2) / sha256;
-  }
-  [[nodiscard]] fs::path columns_path(std::string_view sha256) const override {
-    return root_ / "columns" / sha256.substr(0, 2) / (std::string(sha256) + std::string(kColumnsSuffix));
-  }
+  [[nodiscard]] fs::path bytes_path(std::string_view sha256) const override { return bytes_below(root_, sha256); }
+  [[nodiscard]] fs::path columns_path(std::string_view sha256) const override { return columns_below(root_, sha256); }
   [[nodiscard]] Status remove(std::string_view sha256) override;
   [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) override;
   [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) override;
@@ -367,6 +363,14 @@ fs::path pyramid_path(const fs::path& columns) {
   fs::path path = columns;
   path += ".pyramid";
   return path;
+}
+
+fs::path bytes_below(const fs::path& root, std::string_view sha256) {
+  return root / "blobs" / sha256.substr(0, 2) / sha256;
+}
+
+fs::path columns_below(const fs::path& root, std::string_view sha256) {
+  return root / "columns" / sha256.substr(0, 2) / (std::string(sha256) + std::string(kColumnsSuffix));
 }
 
 Result<std::unique_ptr<BlobStore>> open_blob_directory(const fs::path& root) {

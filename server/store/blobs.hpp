@@ -86,6 +86,10 @@ class BlobStore {
   [[nodiscard]] virtual Status ping() const { return {}; }
 };
 
+/// Where a directory of blobs keeps the bytes of one, and its columns.
+[[nodiscard]] std::filesystem::path bytes_below(const std::filesystem::path& root, std::string_view sha256);
+[[nodiscard]] std::filesystem::path columns_below(const std::filesystem::path& root, std::string_view sha256);
+
 /// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Holds a lock on the directory
 /// while it lives. Errors: Io; Conflict where another daemon has the directory.
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blob_directory(const std::filesystem::path& root);

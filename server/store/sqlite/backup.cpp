@@ -1,5 +1,6 @@
 #include "server/store/sqlite/backup.hpp"
 
+#include "server/store/blobs.hpp"
 #include "server/store/checksums.hpp"
 #include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
@@ -23,13 +24,6 @@ namespace fs = std::filesystem;
 constexpr const char* kDatabase = "driftlab.db";
 constexpr const char* kManifest = "manifest.json";
 constexpr std::int64_t kFirstSealedSchema = 16;
-
-fs::path bytes_below(const fs::path& root, const std::string& sha256) {
-  return root / "blobs" / sha256.substr(0, 2) / sha256;
-}
-fs::path columns_below(const fs::path& root, const std::string& sha256) {
-  return root / "columns" / sha256.substr(0, 2) / (sha256 + ".columns");
-}
 
 Result<std::unique_ptr<SqliteConnection>> open_to_read(const fs::path& directory) {
   std::error_code none;
