@@ -194,6 +194,9 @@ Result<Job> sound_job(Connection& connection, std::string_view id) {
 Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {
   FilteredQuery query(kSelect);
   query.where("kind = ?", filter.kind);
+  if (filter.state && is_terminal(*filter.state) && *filter.state != JobState::Succeeded) {
+    query.where("state IN ('failed', 'cancelled', 'dead')");  // an index has only those
+  }
   query.where("state = ?", filter.state ? std::optional<std::string>(name_of(*filter.state)) : std::nullopt);
   query.where("json_extract(request_json, '$.inputs.device') = ?", filter.input_device);
   query.where("json_extract(request_json, '$.inputs.candidate.label') = ?", filter.candidate);

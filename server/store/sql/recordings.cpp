@@ -221,6 +221,9 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   FilteredQuery query(kSelect);
   query.where("device_id = ?", filter.device_id);
   query.where("condition = ?", filter.condition);
+  if (!filter.labels.empty()) {
+    query.where("tags_json <> '{}'");  // an index has only those
+  }
   for (const std::string& label : filter.labels) {
     query.where("EXISTS (SELECT 1 FROM json_each(tags_json, '$.labels') WHERE key || '=' || value = ?)", label);
   }
