@@ -23,9 +23,13 @@ constexpr std::string_view kDropResult = "DELETE FROM job_results WHERE job_id =
 /// A job that pooled what is no longer the latest gives up its key: should the set come back, it is pooled again.
 constexpr std::string_view kGiveUpKey = "UPDATE jobs SET unique_key = unique_key || ' ' || id WHERE id = ?";
 constexpr std::string_view kTakePlace = "UPDATE jobs SET run_at = ?2 WHERE id = ?1 AND run_at > ?2";
-constexpr std::string_view kEveryAxis =
-    "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE axis <> '' "
-    "UNION SELECT device_id, quantity, axis FROM pools";
+/// Axes that have results to pool and no pool, and pools whose job is gone or is of another version. Of all others the
+/// row was written with the results that it names: however many there are, nothing is read of them but their keys.
+constexpr std::string_view kAxesWithoutPool =
+    "SELECT device_id, quantity, axis FROM channel_results WHERE axis <> '' GROUP BY device_id, quantity, axis "
+    "HAVING count(DISTINCT recording_id) > 1 EXCEPT SELECT device_id, quantity, axis FROM pools UNION "
+    "SELECT pools.device_id, pools.quantity, pools.axis FROM pools LEFT JOIN jobs ON jobs.unique_key = "
+    "pools.unique_key WHERE jobs.id IS NULL OR jobs.request_json NOT LIKE ?";
 /// Also those that results of before have, of recordings whose columns had another meaning then.
 constexpr std::string_view kAxesOfJob =
     "SELECT DISTINCT device_id, quantity, axis FROM channel_results WHERE recording_id IN (SELECT recording_id FROM "
@@ -133,7 +137,8 @@ Result<int> refresh_pools(Connection& connection, const std::vector<SensorAxis>&
 Result<int> queue_missing_pools(Connection& connection, UtcMicros now) {
   Result<std::vector<SensorAxis>> axes = std::vector<SensorAxis>();
   {
-    Statement statement = connection.prepare(kEveryAxis);
+    Statement statement = connection.prepare(kAxesWithoutPool);
+    statement.bind(R"({"algorithm_version":)" + std::to_string(kPoolVersion) + ",%");
     axes = all_rows(statement, read_axis);
   }
   return axes ? refresh_pools(connection, *axes, now) : fail(axes.error());

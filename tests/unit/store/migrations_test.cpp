@@ -215,6 +215,14 @@ TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   EXPECT_EQ(*(*now)->queue_missing_pools(), 1);
   EXPECT_EQ(*(*now)->queue_missing_pools(), 0) << "asked again, the same job";
   EXPECT_EQ((*now)->axis_results(axis)->pool->state, JobState::Queued);
+  const auto database = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+  ASSERT_TRUE((*database)->execute(
+      "UPDATE jobs SET unique_key = 'of before', request_json = '{\"algorithm_version\":0}' WHERE kind = 'pool'; "
+      "UPDATE pools SET unique_key = 'of before'"));
+  EXPECT_EQ(*(*now)->queue_missing_pools(), 1) << "pooled by another version";
+  ASSERT_TRUE((*database)->execute("DELETE FROM pools"));
+  EXPECT_EQ(*(*now)->queue_missing_pools(), 1) << "the axis names no job";
+  EXPECT_EQ(*(*now)->queue_missing_pools(), 0);
 }
 
 TEST(Migrations, ResultsOfAnEarlierReleaseAreSeenAtAGlance) {
