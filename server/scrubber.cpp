@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace driftlab::server {
@@ -181,7 +182,7 @@ void Scrubber::look_again(const std::stop_token& stop) {
   }
   for (const std::string& row : known) {
     const auto damaged = store_.is_damaged(row);
-    if (damaged && damaged->has_value() && !**damaged) {
+    if (damaged && *damaged == std::optional(false)) {
       end(row);
     }
     if (stop.stop_requested()) {

@@ -375,8 +375,10 @@ void prefer_whole_windows(const Work& work, SampleWiseVariance& result) {
   }
   const std::vector<std::optional<WholeWindows>> windows = recorded.at(half);
   for (std::size_t j = 0; j < half.size(); ++j) {
-    result.curve.variance[j] = windows[j]->variance;
-    result.efficiency[j] = windows[j]->share;
+    if (const std::optional<WholeWindows>& whole = windows[j]) {
+      result.curve.variance[j] = whole->variance;
+      result.efficiency[j] = whole->share;
+    }
   }
 }
 

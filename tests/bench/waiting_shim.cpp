@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 
+#include <charconv>
 #include <chrono>
 #include <cstdarg>
 #include <cstdlib>
@@ -20,7 +21,12 @@ std::string_view said(const char* name) {
 
 void wait_for(const char* path, int flags) {
   static const std::string_view ending = said("DRIFTLAB_WAIT_FOR");
-  static const std::chrono::milliseconds wait(std::atoll(said("DRIFTLAB_WAIT_MS").data()));
+  static const std::chrono::milliseconds wait = [] {
+    const std::string_view text = said("DRIFTLAB_WAIT_MS");
+    long milliseconds = 0;
+    std::from_chars(text.data(), text.data() + text.size(), milliseconds);
+    return std::chrono::milliseconds(milliseconds);
+  }();
   if (!ending.empty() && (flags & O_ACCMODE) == O_RDONLY && std::string_view(path).ends_with(ending)) {
     std::this_thread::sleep_for(wait);
   }

@@ -52,17 +52,18 @@ std::vector<Evidence> examine(const FullRate& data) {
   const auto chirps = chirps_of(data, scopes);
   std::vector<Evidence> found;
   for (std::size_t s = 0; s < scopes.size() && !data.stopped(); ++s) {
-    if (!chirps[s]) {
+    const std::optional<Followed>& chirp = chirps[s];
+    if (!chirp) {
       continue;
     }
     // A frequency in 1/T and a slope in 2/T^2.
     const double places = 0.5 * std::pow(0.5 / data.dt_s * longest_s(data, scopes[s]), 2.0);
-    const double score = -2.0 * log_tail(chirps[s]->x, static_cast<double>(scopes[s].size())) - choice_penalty(places) -
+    const double score = -2.0 * log_tail(chirp->x, static_cast<double>(scopes[s].size())) - choice_penalty(places) -
                          choice_penalty(static_cast<double>(scopes.size())) - 3.0;
     if (score < 4.0) {
       continue;
     }
-    Evidence evidence = describe(data, scopes[s], *chirps[s]);
+    Evidence evidence = describe(data, scopes[s], *chirp);
     evidence.score = score;
     found.push_back(std::move(evidence));
   }

@@ -122,7 +122,9 @@ std::string lists_of(const std::map<std::string, std::map<std::string, int>>& co
     for (const auto& [what, times] : of_cause) {
       line.append(line.empty() ? ": " : ", ").append(what).append(" ").append(std::to_string(times));
     }
-    lines.append(line.empty() ? "" : "- " + cause + line + "\n");
+    if (!line.empty()) {
+      lines.append("- ").append(cause).append(line).append("\n");
+    }
   }
   return lines;
 }
