@@ -17,7 +17,11 @@ namespace {
 
 constexpr double kFarthest = 0.45;  ///< [Hz]
 constexpr double kLowest = 1.0;     ///< [Hz]: below, slow noise has company of its own
-constexpr double kBeside = 4.0;     ///< score of the two lines beside the carrier
+/// Score of the two lines beside the carrier, where that is a finding by itself and where it is one of the many peaks
+/// of a spectrum.
+constexpr double kBesideALine = 4.0;
+constexpr double kBesideAPeak = 12.0;
+constexpr double kLine = 10.0;  ///< score of a carrier that is a finding by itself
 
 double length_s(const FullRate& data, std::size_t r) {
   return static_cast<double>(data.innovation[r].size()) * data.dt_s;
@@ -207,7 +211,8 @@ std::vector<Evidence> examine(const FullRate& data) {
                          choice_penalty(scopes);
     // By themselves the two beside it must be more than chance, or the line is one line.
     const double beside = -2.0 * log_tail(triple.beside, 2.0 * recordings) - choice_penalty(3.0 * kFarthest * longest);
-    if (score < 4.0 || beside < kBeside || !is_modulated(data, line.members, triple)) {
+    if (score < 4.0 || beside < (line.score > kLine ? kBesideALine : kBesideAPeak) ||
+        !is_modulated(data, line.members, triple)) {
       continue;
     }
     Evidence evidence = describe(data, line.members, triple);
