@@ -23,6 +23,7 @@ constexpr double kLeastRun = 0.5;           ///< [Hz] from one end to the other:
 constexpr double kSlope = 4.0;           ///< from a map to the next, in 1/L^2: a seventh of the power is lost half-way
 constexpr std::size_t kCandidates = 64;  ///< lines that go to stage 2
 constexpr double kMostFollowed = 20e6;   ///< samples that stage 2 beats, of all its lines together
+constexpr double kMostWeighed = 4e6;     ///< samples of all recordings, beyond which stage 2 takes innovations as white
 constexpr std::size_t kCell = 8;         ///< ordinates: of one cell the best line alone is a candidate
 
 std::size_t piece_of(const FullRate& data) {
@@ -177,14 +178,14 @@ double surprise(double ratio, double m) { return ratio > 1.0 ? m * (ratio - 1.0 
 /// A sweep followed from nearby: sums against it, and what a step away from it makes of them.
 class Follower {
  public:
-  /// `power`: of the recordings of the scope, in its order.
+  /// `power`: of the recordings of the scope, in its order; null: of white innovations.
   Follower(const FullRate& data, const std::vector<std::size_t>& scope, const std::vector<const BandPower*>& power,
            const Sweep& near, double reach_hz)
       : data_(&data), near_(near), longest_s_(longest_s(data, scope)) {
     const auto block = static_cast<std::size_t>(std::max(1.0, 2.0 / (kStretch * reach_hz * data.dt_s)));
     for (std::size_t k = 0; k < scope.size(); ++k) {
       beaten_.push_back(beat(data, scope[k], near, block));
-      excess_.push_back(power[k]->most_between(near.f_hz, near.at(longest_s_)));
+      excess_.push_back(power[k] != nullptr ? power[k]->most_between(near.f_hz, near.at(longest_s_)) : 1.0);
     }
   }
 
@@ -405,8 +406,8 @@ std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
     counts.push_back(static_cast<std::size_t>(std::ceil(share * most)));
   }
   const auto lines = lines_of(data, scopes, counts, piece);
-  std::vector<BandPower> power;
-  for (std::size_t r = 0; r < data.members(); ++r) {
+  std::vector<BandPower> power;  // of very long recordings it is taken where a line is followed to the whole
+  for (std::size_t r = 0; r < data.members() && samples < kMostWeighed; ++r) {
     power.emplace_back(data, r);
   }
   const double piece_s = static_cast<double>(piece) * data.dt_s;
@@ -415,7 +416,7 @@ std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
   for (std::size_t s = 0; s < scopes.size() && !data.stopped(); ++s) {
     std::vector<const BandPower*> of_scope;
     for (const std::size_t r : scopes[s]) {
-      of_scope.push_back(&power[r]);
+      of_scope.push_back(power.empty() ? nullptr : &power[r]);
     }
     std::optional<Follower> best;
     for (const Line& line : lines[s]) {
@@ -426,7 +427,9 @@ std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
       }
     }
     if (best && surprise(0.5 * best->x() / best->stretches(), best->stretches()) > std::log(band * band)) {
-      found[s] = followed(data, scopes[s], of_scope, best->followed().sweep, 0.5 / piece_s);
+      const Sweep near = best->followed().sweep;
+      found[s] = power.empty() ? follow_chirp(data, scopes[s], near, 0.5 / piece_s)
+                               : followed(data, scopes[s], of_scope, near, 0.5 / piece_s);
     }
   }
   return found;
