@@ -316,14 +316,6 @@ Sweep sweep_of(const Line& line, double piece_s, double seconds) {
   return {0.5 * static_cast<double>(line.from) / piece_s, 0.5 * static_cast<double>(line.run) / piece_s / seconds};
 }
 
-Followed followed(const FullRate& data, const std::vector<std::size_t>& scope,
-                  const std::vector<const BandPower*>& power, const Sweep& near, double reach_hz) {
-  Follower follower(data, scope, power, near, reach_hz);
-  follower.look_around();
-  follower.look_closer();
-  return follower.followed();
-}
-
 /// The best lines of every scope, whose maps are made once.
 std::vector<std::vector<Line>> lines_of(const FullRate& data, const std::vector<std::vector<std::size_t>>& scopes,
                                         const std::vector<std::size_t>& counts, std::size_t piece) {
@@ -385,7 +377,10 @@ Followed follow_chirp(const FullRate& data, const std::vector<std::size_t>& scop
   for (const std::size_t r : scope) {
     of_scope.push_back(&power.emplace_back(data, r));
   }
-  return followed(data, scope, of_scope, near, reach_hz);
+  Follower follower(data, scope, of_scope, near, reach_hz);
+  follower.look_around();
+  follower.look_closer();
+  return follower.followed();
 }
 
 std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
@@ -427,9 +422,7 @@ std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
       }
     }
     if (best && surprise(0.5 * best->x() / best->stretches(), best->stretches()) > std::log(band * band)) {
-      const Sweep near = best->followed().sweep;
-      found[s] = power.empty() ? follow_chirp(data, scopes[s], near, 0.5 / piece_s)
-                               : followed(data, scopes[s], of_scope, near, 0.5 / piece_s);
+      found[s] = follow_chirp(data, scopes[s], best->followed().sweep, 0.5 / piece_s);
     }
   }
   return found;
