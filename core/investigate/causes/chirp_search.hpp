@@ -29,8 +29,8 @@ struct Followed {
 };
 
 /// Of each scope the chirp that fits best over the whole of its recordings, from one end of each to the other; nothing
-/// where no line stands out of all that were looked along, or where recordings are shorter than a few pieces. Memory: 2
-/// bytes a sample. O(n log n) for each slope, and n for each of at most 64 lines.
+/// where no line stands out of all that were looked along, or where recordings are shorter than a few pieces. Memory: 8
+/// bytes a sample at most. O(n log n) for each slope, and n for each of at most 64 lines.
 [[nodiscard]] std::vector<std::optional<Followed>> chirps_of(const FullRate& data,
                                                              const std::vector<std::vector<std::size_t>>& scopes);
 

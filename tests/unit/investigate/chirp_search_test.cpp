@@ -59,6 +59,8 @@ TEST(ChirpSearch, FollowsAChirpOfTwelveDeviationsInOneRecording) { EXPECT_GE(fol
 
 TEST(ChirpSearch, FollowsAChirpOfTwelveDeviationsThatThreeShare) { EXPECT_GE(followed_of_twenty(3, 12.0), 18); }
 
+TEST(ChirpSearch, FollowsAChirpOfTwelveDeviationsThatFiveShare) { EXPECT_GE(followed_of_twenty(5, 12.0), 16); }
+
 TEST(ChirpSearch, FollowsMostOfTheChirpsOfTwelveDeviationsThatSevenShare) {
   EXPECT_GE(followed_of_twenty(7, 12.0), 10);
 }
