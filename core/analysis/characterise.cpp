@@ -7,46 +7,23 @@
 
 namespace driftlab {
 
-Result<CharacterisedRecording> characterise_recording(const RecordingSpec& spec, RecordingView view,
-                                                      const Calibration& calibration,
-                                                      const CharacteriseOptions& options, const RunControl& control) {
+Result<PreparedRecording> PreparedRecording::make(const RecordingSpec& spec, RecordingView view,
+                                                  const Calibration& calibration) {
   if (auto applied = apply_calibration(calibration, view); !applied) {
     return fail(applied.error());
   }
-  std::vector<ReferenceAlignment> alignments = align_references(view);
-  CharacterisedRecording found{spec, {}, {}, {}};
-  const auto count = static_cast<double>(view.channels.size());
-  for (const ChannelView& channel : view.channels) {
-    const auto done = static_cast<double>(found.channels.size());
-    const RunControl part = control.reporting([&](std::string_view stage, double fraction) {
-      control.report(channel.column + ": " + std::string(stage), (done + fraction) / count);
-    });
-    const double factor = channel.role.unit ? channel.role.unit->factor : 1.0;
-    auto result = characterise_channel({channel.values, view.window.time.dt_s, factor, channel.gaps}, options, part);
-    if (!result) {
-      return fail(Error(result.error()).with("column", channel.column));
-    }
-    const auto aligned = std::find_if(alignments.begin(), alignments.end(), [&](const ReferenceAlignment& alignment) {
-      return alignment.channel == channel.column;
-    });
-    found.channels.push_back({channel.column, channel.role, std::move(*result), std::nullopt});
-    if (aligned != alignments.end()) {
-      found.channels.back().reference = std::move(*aligned);
-    }
-  }
-  found.window = std::move(view.window);
-  return found;
+  PreparedRecording prepared;
+  prepared.alignments_ = align_references(view);
+  prepared.frame_.spec = spec;
+  prepared.frame_.window = view.window;
+  prepared.view_ = std::move(view);
+  return prepared;
 }
 
-Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
-                                                         const CharacteriseOptions& options,
-                                                         const RunControl& control) {
-  std::vector<CharacterisedRecording> found;
-  const auto count = static_cast<double>(recordings.count());
-  const auto one = [&](std::size_t i) -> Result<CharacterisedRecording> {
-    const double opened = recordings.opening_share();
-    const RunControl part = part_of(control, static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
-    auto recording = recordings.open(i, part_of(part, 0.0, opened));
+Result<PreparedRecording> PreparedRecording::open(RecordingSource& recordings, std::size_t index,
+                                                  const RunControl& control) {
+  const auto opened = [&]() -> Result<PreparedRecording> {
+    auto recording = recordings.open(index, control);
     if (!recording) {
       return fail(recording.error());
     }
@@ -55,22 +32,70 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
       return fail(view.error());
     }
     add_unit_notes(*view, recording->columns, recording->spec, recording->hardware);
-    auto calibration = recordings.calibration(i);
+    auto calibration = recordings.calibration(index);
     if (!calibration) {
       return fail(calibration.error());
     }
     auto temperature = measured_temperature(recording->spec, recording->columns.names(), *view,
                                             [&](std::size_t k) { return recording->columns.column(k); });
-    auto found_one =
-        characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
-    if (found_one) {
-      found_one->temperature = std::move(temperature);
-      found_one->device = recording->device;
+    auto prepared = make(recording->spec, std::move(*view), *calibration);
+    if (prepared) {
+      prepared->frame_.temperature = std::move(temperature);
+      prepared->frame_.device = recording->device;
+      prepared->columns_ = std::move(recording->columns);
     }
-    return found_one;
+    return prepared;
   };
+  auto prepared = opened();
+  return prepared ? std::move(prepared) : fail(recordings.located(index, prepared.error()));
+}
+
+Result<CharacterisedChannel> PreparedRecording::characterise(std::size_t channel, const CharacteriseOptions& options,
+                                                             const RunControl& control) const {
+  const ChannelView& seen = view_.channels[channel];
+  const RunControl part = control.reporting([&](std::string_view stage, double fraction) {
+    control.report(seen.column + ": " + std::string(stage), fraction);
+  });
+  const double factor = seen.role.unit ? seen.role.unit->factor : 1.0;
+  auto result = characterise_channel({seen.values, view_.window.time.dt_s, factor, seen.gaps}, options, part);
+  if (!result) {
+    return fail(Error(result.error()).with("column", seen.column));
+  }
+  const auto aligned = std::find_if(alignments_.begin(), alignments_.end(), [&](const ReferenceAlignment& alignment) {
+    return alignment.channel == seen.column;
+  });
+  return CharacterisedChannel{seen.column, seen.role, std::move(*result),
+                              aligned != alignments_.end() ? std::optional(*aligned) : std::nullopt};
+}
+
+Result<CharacterisedRecording> characterise_recording(const PreparedRecording& recording,
+                                                      const CharacteriseOptions& options, const RunControl& control) {
+  CharacterisedRecording found = recording.frame();
+  const auto count = static_cast<double>(recording.channels());
+  for (std::size_t c = 0; c < recording.channels(); ++c) {
+    const auto done = static_cast<double>(c);
+    auto channel = recording.characterise(c, options, part_of(control, done / count, (done + 1.0) / count));
+    if (!channel) {
+      return fail(channel.error());
+    }
+    found.channels.push_back(std::move(*channel));
+  }
+  return found;
+}
+
+Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
+                                                         const CharacteriseOptions& options,
+                                                         const RunControl& control) {
+  std::vector<CharacterisedRecording> found;
+  const auto count = static_cast<double>(recordings.count());
   for (std::size_t i = 0; i < recordings.count(); ++i) {
-    auto recording = one(i);
+    const double opened = recordings.opening_share();
+    const RunControl part = part_of(control, static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+    const auto prepared = PreparedRecording::open(recordings, i, part_of(part, 0.0, opened));
+    if (!prepared) {
+      return fail(prepared.error());
+    }
+    auto recording = characterise_recording(*prepared, options, part_of(part, opened, 1.0));
     if (!recording) {
       return fail(recordings.located(i, recording.error()));
     }

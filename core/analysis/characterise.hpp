@@ -33,15 +33,39 @@ struct CharacterisedRecording {
   std::string device = {};  ///< name of the device, as its source has it
 };
 
-/// One recording from its view. Progress runs over its channels. Errors: those of apply_calibration; those of
-/// characterise_channel, with field "column"; Cancelled.
-[[nodiscard]] Result<CharacterisedRecording> characterise_recording(const RecordingSpec& spec, RecordingView view,
-                                                                    const Calibration& calibration,
+/// A recording whose channels can be characterised, each for itself and in any order.
+class PreparedRecording {
+ public:
+  /// Errors: those of apply_calibration.
+  [[nodiscard]] static Result<PreparedRecording> make(const RecordingSpec& spec, RecordingView view,
+                                                      const Calibration& calibration);
+  /// Recording `index` < recordings.count(), opened. Errors, located: those of the source, of view_recording and of
+  /// `make`; Cancelled.
+  [[nodiscard]] static Result<PreparedRecording> open(RecordingSource& recordings, std::size_t index,
+                                                      const RunControl& control);
+
+  [[nodiscard]] std::size_t channels() const { return view_.channels.size(); }
+  /// Errors: those of characterise_channel, with field "column"; Cancelled.
+  [[nodiscard]] Result<CharacterisedChannel> characterise(std::size_t channel, const CharacteriseOptions& options,
+                                                          const RunControl& control) const;
+  /// What is said of the recording as a whole: a CharacterisedRecording without channels.
+  [[nodiscard]] const CharacterisedRecording& frame() const { return frame_; }
+
+ private:
+  PreparedRecording() = default;
+
+  std::optional<ColumnFile> columns_;  ///< into which `view_` points, where this object opened them
+  RecordingView view_;
+  std::vector<ReferenceAlignment> alignments_;
+  CharacterisedRecording frame_;
+};
+
+/// All channels of a prepared recording. Progress runs over them. Errors: those of PreparedRecording::characterise.
+[[nodiscard]] Result<CharacterisedRecording> characterise_recording(const PreparedRecording& recording,
                                                                     const CharacteriseOptions& options,
                                                                     const RunControl& control);
 
-/// All of them, one after the other and none kept open. Errors, located: those of the source, of
-/// view_recording and of characterise_recording.
+/// All recordings, one after the other and none kept open. Errors, located: those of PreparedRecording.
 [[nodiscard]] Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
                                                                        const CharacteriseOptions& options,
                                                                        const RunControl& control);

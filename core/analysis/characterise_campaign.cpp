@@ -6,9 +6,6 @@
 namespace driftlab {
 namespace {
 
-/// Of the progress; the rest is for what the recordings say together.
-constexpr double kRecordingsShare = 0.9;
-
 bool of_one_device(const std::vector<CharacterisedRecording>& recordings) {
   return std::all_of(recordings.begin(), recordings.end(), [&](const CharacterisedRecording& recording) {
     return recording.device == recordings.front().device;
@@ -23,13 +20,17 @@ Result<CharacterisedCampaign> characterise_campaign(RecordingSource& recordings,
   if (!found) {
     return fail(found.error());
   }
-  CharacterisedCampaign campaign{std::move(*found), {}};
+  return summarise_characterised(std::move(*found), part_of(control, kRecordingsShare, 1.0), result_name);
+}
+
+Result<CharacterisedCampaign> summarise_characterised(std::vector<CharacterisedRecording> recordings,
+                                                      const RunControl& control, const ResultName& result_name) {
+  CharacterisedCampaign campaign{std::move(recordings), {}};
   if (campaign.recordings.empty() || !of_one_device(campaign.recordings)) {
     return campaign;
   }
   const std::vector<SensorSources> sensors = sensors_of(campaign.recordings, result_name);
-  auto together =
-      summarise_campaign(campaign.recordings.front().device, sensors, part_of(control, kRecordingsShare, 1.0));
+  auto together = summarise_campaign(campaign.recordings.front().device, sensors, control);
   if (!together) {
     return fail(together.error());
   }

@@ -14,10 +14,19 @@ struct CharacterisedCampaign {
   CampaignSummary together;  ///< empty for recordings of several devices, which say nothing together
 };
 
-/// Progress: nine tenths for the recordings. Errors: those of characterise and of pool_sensor, Cancelled among them.
+/// Progress: kRecordingsShare for the recordings. Errors: those of characterise and of pool_sensor, Cancelled among
+/// them.
 [[nodiscard]] Result<CharacterisedCampaign> characterise_campaign(RecordingSource& recordings,
                                                                   const CharacteriseOptions& options,
                                                                   const RunControl& control,
                                                                   const ResultName& result_name = {});
+
+/// The second half of it: recordings that have been characterised, together. Errors: those of pool_sensor; Cancelled.
+[[nodiscard]] Result<CharacterisedCampaign> summarise_characterised(std::vector<CharacterisedRecording> recordings,
+                                                                    const RunControl& control,
+                                                                    const ResultName& result_name = {});
+
+/// Of the progress; the rest is for what the recordings say together.
+inline constexpr double kRecordingsShare = 0.9;
 
 }  // namespace driftlab

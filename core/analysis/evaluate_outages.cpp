@@ -14,7 +14,11 @@ Result<OutageReport> report_outages(const OutageScenario& scenario, const Outage
   if (!evaluation) {
     return fail(evaluation.error());
   }
-  OutageReport report{scenario, std::move(*evaluation), std::nullopt, {}, {}};
+  return report_of(scenario, std::move(*evaluation));
+}
+
+OutageReport report_of(const OutageScenario& scenario, OutageEvaluation evaluation) {
+  OutageReport report{scenario, std::move(evaluation), std::nullopt, {}, {}};
   report.attribution = attribute(report.evaluation);
   report.claims = judge_claims(report.evaluation);
   report.summary = verdict_of(report.evaluation, report.attribution, report.claims);

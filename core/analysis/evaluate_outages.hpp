@@ -25,6 +25,9 @@ struct OutageReport {
 [[nodiscard]] Result<OutageReport> report_outages(const OutageScenario& scenario, const OutageOptions& options = {},
                                                   const RunControl& control = {});
 
+/// What the evaluation of a scenario says.
+[[nodiscard]] OutageReport report_of(const OutageScenario& scenario, OutageEvaluation evaluation);
+
 /// The ellipse that holds a fraction of a normal distribution in the plane: half axes [m], direction of the longer one
 /// from north over east [rad].
 struct ErrorEllipse {

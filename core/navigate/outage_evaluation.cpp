@@ -13,13 +13,13 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kBatch = 20;
-constexpr std::size_t kTellings = 10;  ///< of what is known so far, where nothing hangs on it
+constexpr std::size_t kMostBatches = 200;  ///< where nothing hangs on what is known after each
+constexpr std::size_t kTellings = 10;      ///< of what is known so far, where nothing hangs on it
 
 /// Squared radius of the ellipse that holds a fraction of a plane normal distribution: -2 ln(1 - fraction).
 double ellipse_bound(double fraction) { return -2.0 * std::log(1.0 - fraction); }
 
-/// scores[run][filter][outage]
-using Scores = std::vector<std::vector<std::vector<OutageScore>>>;
+using Scores = decltype(OutageBatch::scores);
 
 /// Mean and interval of independent values.
 Estimate mean_of(const std::vector<double>& values) {
@@ -114,8 +114,8 @@ OutageSummary summarise(const Scores& scores, const OutageScenario& scenario, st
   return summary;
 }
 
-FilterEvaluation evaluate(const Scores& scores, const OutageExperiment& experiment, std::size_t filter,
-                          int scatter_runs) {
+FilterEvaluation evaluation_of(const Scores& scores, const OutageExperiment& experiment, std::size_t filter,
+                               int scatter_runs) {
   const OutageScenario& scenario = experiment.scenario();
   const auto mean = [&](const auto& value) { return mean_of(per_run(scores, filter, value)).value; };
   FilterEvaluation result;
@@ -174,30 +174,13 @@ bool precise_enough(const Scores& scores, std::size_t filters, double relative_p
   return true;
 }
 
-/// What is known after some runs, as the stage of those that follow.
-std::string stage_after(const Scores& scores, std::size_t done, const OutageScenario& scenario) {
-  const Scores so_far(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(done));
-  OutagesSoFar known{done, {}};
+/// What is known after these runs, as the stage of those that follow.
+std::string stage_after(const Scores& scores, const OutageScenario& scenario) {
+  OutagesSoFar known{scores.size(), {}};
   for (std::size_t f = 0; f < scenario.filters.size(); ++f) {
-    known.filters.push_back({scenario.filters[f].name, mean_of(per_run(so_far, f, error_m))});
+    known.filters.push_back({scenario.filters[f].name, mean_of(per_run(scores, f, error_m))});
   }
   return stage_of(known);
-}
-
-/// Runs `first` to `last` - 1; of the threads that share them the calling one alone reports.
-void run_batch(const OutageExperiment& experiment, const OutageOptions& options, std::size_t first, std::size_t last,
-               Scores& scores, DrawnRun& drawn, const std::string& stage, const RunControl& control) {
-  std::atomic<std::size_t> done{first};
-  const auto caller = std::this_thread::get_id();
-  const auto task = [&](std::size_t number) {
-    const std::size_t run = first + number;
-    scores[run] = experiment.run(options.seed, run, run == 0 ? &drawn : nullptr, control.stop);
-    const std::size_t finished = ++done;
-    if (std::this_thread::get_id() == caller) {
-      control.report(stage, static_cast<double>(finished) / static_cast<double>(options.runs));
-    }
-  };
-  parallel_for(control.threads, last - first, task, control.stop);
 }
 
 }  // namespace
@@ -219,59 +202,154 @@ std::optional<PairedDifference> OutageEvaluation::difference(std::string_view fi
   return std::nullopt;
 }
 
-Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const OutageOptions& options,
-                                          const RunControl& control) {
+struct OutageBatches::State {
+  OutageExperiment experiment;
+  OutageOptions options;
+  std::size_t most = 0;   ///< runs
+  std::size_t batch = 0;  ///< runs of each, of the last the rest
+  std::size_t telling = 0;
+  Scores scores = {};  ///< of the batches taken
+  DrawnRun drawn = {};
+  bool stopped_early = false;
+  std::string stage = "outages";
+};
+
+OutageBatches::OutageBatches(std::unique_ptr<State> state) : state_(std::move(state)) {}
+OutageBatches::OutageBatches(OutageBatches&&) noexcept = default;
+OutageBatches& OutageBatches::operator=(OutageBatches&&) noexcept = default;
+OutageBatches::~OutageBatches() = default;
+
+Result<OutageBatches> OutageBatches::make(const OutageScenario& scenario, const OutageOptions& options,
+                                          const std::stop_token& stop) {
   if (options.runs < 2 || options.runs > 100000 || !(options.relative_precision >= 0.0)) {
     return fail(ErrorCode::InvalidArgument,
                 "An evaluation takes 2 to 100000 runs and a precision that is not negative.", {{"parameter", "runs"}});
   }
-  control.report("trajectory", 0.0);
-  auto experiment = OutageExperiment::make(scenario, control.stop);
+  auto experiment = OutageExperiment::make(scenario, stop);
   if (!experiment) {
     return fail(experiment.error());
   }
-  const std::size_t filters = scenario.filters.size();
   const auto most = static_cast<std::size_t>(options.runs);
-  Scores scores(most);
-  DrawnRun drawn;
-  OutageEvaluation result;
-  std::size_t done = 0;
   const bool may_stop = options.relative_precision > 0.0;
-  const std::size_t batch = may_stop ? kBatch : std::max(2 * kBatch, most / kTellings);
-  std::string stage = "outages";
-  while (done < most && !result.stopped_early) {
-    const std::size_t last = std::min(done + batch, most);  // a batch is never split by threads
-    run_batch(*experiment, options, done, last, scores, drawn, stage, control);
-    if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "The outage evaluation was cancelled.");
+  const std::size_t batch = may_stop ? kBatch : std::max(kBatch, most / kMostBatches);
+  const std::size_t telling = may_stop ? kBatch : std::max(2 * kBatch, most / kTellings);
+  return OutageBatches(std::make_unique<State>(State{std::move(*experiment), options, most, batch, telling}));
+}
+
+std::size_t OutageBatches::count() const { return (state_->most + state_->batch - 1) / state_->batch; }
+
+Result<OutageBatch> OutageBatches::run(std::size_t number, const RunControl& control) const {
+  const std::size_t first = number * state_->batch;
+  const std::size_t count = std::min(state_->batch, state_->most - first);
+  OutageBatch batch;
+  batch.scores.resize(count);
+  DrawnRun drawn;
+  std::atomic<std::size_t> done{0};
+  const auto caller = std::this_thread::get_id();  // of the threads that share the runs it alone reports
+  const auto task = [&](std::size_t i) {
+    const std::size_t run = first + i;
+    batch.scores[i] = state_->experiment.run(state_->options.seed, run, run == 0 ? &drawn : nullptr, control.stop);
+    const std::size_t finished = ++done;
+    if (std::this_thread::get_id() == caller) {
+      control.report(state_->stage, static_cast<double>(finished) / static_cast<double>(count));
     }
-    done = last;
-    stage = stage_after(scores, done, scenario);
-    if (may_stop && done < most) {
-      const Scores so_far(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(done));
-      result.stopped_early = precise_enough(so_far, filters, options.relative_precision);
-    }
+  };
+  parallel_for(control.threads, count, task, control.stop);
+  if (control.stop.stop_requested()) {
+    return fail(ErrorCode::Cancelled, "The outage evaluation was cancelled.");
   }
-  scores.resize(done);
+  batch.paths = std::move(drawn.paths);
+  batch.tracks = std::move(drawn.tracks);
+  return batch;
+}
+
+Result<bool> OutageBatches::add(OutageBatch batch) {
+  const OutageScenario& scenario = state_->experiment.scenario();
+  Scores& scores = state_->scores;
+  const std::size_t expected = std::min(state_->batch, state_->most - scores.size());
+  bool fits = batch.scores.size() == expected;
+  for (const auto& run : batch.scores) {
+    fits = fits && run.size() == scenario.filters.size() &&
+           std::all_of(run.begin(), run.end(),
+                       [&](const auto& filter) { return filter.size() == scenario.outages.size(); });
+  }
+  if (scores.empty()) {
+    fits = fits && batch.paths.size() == scenario.filters.size() && batch.tracks.size() == scenario.filters.size() &&
+           std::all_of(batch.tracks.begin(), batch.tracks.end(),
+                       [&](const auto& tracks) { return tracks.size() == scenario.outages.size(); });
+  }
+  if (!fits) {
+    return fail(ErrorCode::InvalidArgument, "The batch of runs is not one of this evaluation.");
+  }
+  if (scores.empty()) {
+    state_->drawn = {std::move(batch.paths), std::move(batch.tracks)};
+  }
+  const std::size_t told = scores.size() / state_->telling;
+  scores.insert(scores.end(), std::make_move_iterator(batch.scores.begin()),
+                std::make_move_iterator(batch.scores.end()));
+  if (scores.size() / state_->telling > told) {
+    state_->stage = stage_after(scores, scenario);
+  }
+  if (scores.size() == state_->most) {
+    return false;
+  }
+  const double precision = state_->options.relative_precision;
+  state_->stopped_early = precision > 0.0 && precise_enough(scores, scenario.filters.size(), precision);
+  return !state_->stopped_early;
+}
+
+const std::string& OutageBatches::stage() const { return state_->stage; }
+
+OutageEvaluation OutageBatches::evaluate() const {
+  const OutageExperiment& experiment = state_->experiment;
+  const OutageScenario& scenario = experiment.scenario();
+  OutageEvaluation result;
+  result.stopped_early = state_->stopped_early;
   result.scenario = scenario.name;
-  result.runs = static_cast<int>(done);
-  result.seed = options.seed;
-  result.truth = experiment->true_path();
-  result.true_tracks = experiment->true_tracks();
-  for (std::size_t f = 0; f < filters; ++f) {
-    result.filters.push_back(evaluate(scores, *experiment, f, options.scatter_runs));
-    result.filters.back().path = std::move(drawn.paths[f]);
+  result.runs = static_cast<int>(state_->scores.size());
+  result.seed = state_->options.seed;
+  result.truth = experiment.true_path();
+  result.true_tracks = experiment.true_tracks();
+  for (std::size_t f = 0; f < scenario.filters.size(); ++f) {
+    result.filters.push_back(evaluation_of(state_->scores, experiment, f, state_->options.scatter_runs));
+    result.filters.back().path = state_->drawn.paths[f];
     for (std::size_t outage = 0; outage < scenario.outages.size(); ++outage) {
-      result.filters.back().outages[outage].track = std::move(drawn.tracks[f][outage]);
+      result.filters.back().outages[outage].track = state_->drawn.tracks[f][outage];
     }
-    for (std::size_t against = 0; against < filters; ++against) {
+    for (std::size_t against = 0; against < scenario.filters.size(); ++against) {
       if (against != f) {
-        result.paired.push_back(compare(scores, scenario, f, against));
+        result.paired.push_back(compare(state_->scores, scenario, f, against));
       }
     }
   }
-  control.report("outages", 1.0);
   return result;
+}
+
+Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const OutageOptions& options,
+                                          const RunControl& control) {
+  control.report("trajectory", 0.0);
+  auto batches = OutageBatches::make(scenario, options, control.stop);
+  if (!batches) {
+    return fail(batches.error());
+  }
+  const auto count = static_cast<double>(batches->count());
+  bool more = true;
+  for (std::size_t number = 0; more; ++number) {
+    const auto done = static_cast<double>(number);
+    const RunControl part = control.reporting(
+        [&](std::string_view stage, double fraction) { control.report(stage, (done + fraction) / count); });
+    auto batch = batches->run(number, part);
+    if (!batch) {
+      return fail(batch.error());
+    }
+    const auto added = batches->add(std::move(*batch));
+    if (!added) {
+      return fail(added.error());
+    }
+    more = *added;
+  }
+  control.report("outages", 1.0);
+  return batches->evaluate();
 }
 
 }  // namespace driftlab

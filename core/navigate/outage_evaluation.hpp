@@ -18,6 +18,9 @@
 #include "core/signal/progress.hpp"
 
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace driftlab {
 
@@ -105,7 +108,46 @@ struct OutageEvaluation {
   [[nodiscard]] std::optional<PairedDifference> difference(std::string_view filter, std::string_view against) const;
 };
 
-/// The runs are tasks of `control.threads`; what is known so far is the name of the stage. Errors: those of
+/// Consecutive runs of an evaluation: what one of several computers that share it works out at a time.
+struct OutageBatch {
+  std::vector<std::vector<std::vector<OutageScore>>> scores;  ///< [run][filter][outage]
+  /// Of the first batch alone, what is drawn of the first run: for each filter its path, and its track around each
+  /// outage.
+  std::vector<OutagePath> paths;
+  std::vector<std::vector<OutagePath>> tracks;
+};
+
+/// An evaluation in batches: `run` gives the same batch wherever and whenever it is called, `add` takes them in order.
+class OutageBatches {
+ public:
+  /// Errors: those of evaluate_outages.
+  [[nodiscard]] static Result<OutageBatches> make(const OutageScenario& scenario, const OutageOptions& options,
+                                                  const std::stop_token& stop = {});
+  OutageBatches(OutageBatches&&) noexcept;
+  OutageBatches& operator=(OutageBatches&&) noexcept;
+  OutageBatches(const OutageBatches&) = delete;
+  OutageBatches& operator=(const OutageBatches&) = delete;
+  ~OutageBatches();
+
+  /// At most so many.
+  [[nodiscard]] std::size_t count() const;
+  /// Its runs are tasks of `control.threads`. Progress runs from 0 to 1. Errors: Cancelled.
+  [[nodiscard]] Result<OutageBatch> run(std::size_t number, const RunControl& control) const;
+  /// Takes the next batch. False: it was the last, or the precision asked for is reached. Error: InvalidArgument for
+  /// one of another shape.
+  [[nodiscard]] Result<bool> add(OutageBatch batch);
+  /// What is known after the batches taken so far, as the stage of those that follow; new about ten times.
+  [[nodiscard]] const std::string& stage() const;
+  /// What the batches taken come to: one at least.
+  [[nodiscard]] OutageEvaluation evaluate() const;
+
+ private:
+  struct State;
+  explicit OutageBatches(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Batch by batch; what is known so far is the name of the stage. Errors: those of
 /// check(scenario), of the trajectory and of FilterDesign; Cancelled.
 [[nodiscard]] Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario,
                                                         const OutageOptions& options = {},

@@ -37,7 +37,9 @@ TEST(CharacteriseRecording, GapsCostOnlyWhatTouchesThem) {
     return std::span<const double>(i == 0 ? recorded.time : recorded.values);
   });
   ASSERT_TRUE(view) << view.error().message;
-  const auto found = characterise_recording(spec, std::move(*view), {}, {.models = {"WN+RW"}}, {});
+  const auto prepared = PreparedRecording::make(spec, std::move(*view), {});
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  const auto found = characterise_recording(*prepared, {.models = {"WN+RW"}}, {});
   ASSERT_TRUE(found) << found.error().message;
   const Json document = to_json(*found);
   const Json& channel = document["channels"][0];

@@ -48,6 +48,38 @@ TEST(OutageEvaluation, IsTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(same(one, *evaluate_outages(first_turn(), options)));
 }
 
+TEST(OutageBatches, AreTheEvaluationWhereverEachIsWorkedOut) {
+  OutageOptions options;
+  options.runs = 45;
+  const auto whole = *evaluate_outages(first_turn(), options);
+  auto here = *OutageBatches::make(first_turn(), options);
+  const auto elsewhere = *OutageBatches::make(first_turn(), options);
+  ASSERT_EQ(here.count(), 3U);
+  const auto last = elsewhere.run(2, {});
+  EXPECT_EQ(last->scores.size(), 5U);
+  EXPECT_TRUE(last->paths.empty());
+  EXPECT_TRUE(*here.add(*here.run(0, {})));
+  EXPECT_FALSE(here.add(*last)) << "not the second batch";
+  EXPECT_TRUE(*here.add(*elsewhere.run(1, {})));
+  EXPECT_FALSE(*here.add(*last)) << "the last";
+  EXPECT_TRUE(same(whole, here.evaluate()));
+}
+
+TEST(OutageBatches, EndWhereThePrecisionIsReached) {
+  OutageOptions options;
+  options.runs = 100;
+  options.relative_precision = 0.5;
+  const auto whole = *evaluate_outages(first_turn(), options);
+  EXPECT_TRUE(whole.stopped_early);
+  auto batches = *OutageBatches::make(first_turn(), options);
+  std::size_t number = 0;
+  while (*batches.add(*batches.run(number, {}))) {
+    ++number;
+  }
+  EXPECT_LT(number + 1, batches.count());
+  EXPECT_TRUE(same(whole, batches.evaluate()));
+}
+
 TEST(OutageEvaluation, ProcessNoiseAloneDoesNotChangeTheFirstOutage) {
   // Up to the first turn M_stat(AV) and M_dyn(AV) are one filter, and inside an outage process noise changes the
   // covariance, not the mean: the errors agree to the last bit. With Gauss-Markov states they do not.
