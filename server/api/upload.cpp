@@ -7,9 +7,8 @@
 #include "server/http/guard.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
+#include "server/store/base64.hpp"
 #include "server/store/digest.hpp"
-
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
@@ -24,17 +23,15 @@ std::optional<std::string> stated_digest(std::string_view header) {
     return std::nullopt;
   }
   const std::string_view rest = header.substr(start + 9);
-  const std::string encoded(rest.substr(0, rest.find(':')));
-  std::array<unsigned char, 64> bytes{};
-  if (encoded.size() != 44 ||
-      EVP_DecodeBlock(bytes.data(), reinterpret_cast<const unsigned char*>(encoded.data()), 44) != 33) {
+  const auto bytes = from_base64(std::string(rest.substr(0, rest.find(':'))));
+  if (!bytes || bytes->size() != 32) {
     return "malformed";
   }
   std::string hex;
   constexpr std::string_view kDigits = "0123456789abcdef";
-  for (std::size_t i = 0; i < 32; ++i) {
-    hex += kDigits[bytes[i] >> 4U];
-    hex += kDigits[bytes[i] & 15U];
+  for (const char byte : *bytes) {
+    hex += kDigits[static_cast<unsigned char>(byte) >> 4U];
+    hex += kDigits[static_cast<unsigned char>(byte) & 15U];
   }
   return hex;
 }

@@ -5,6 +5,7 @@
 #include "server/api/documents.hpp"
 #include "server/api/record_blob.hpp"
 #include "server/http/problem.hpp"
+#include "server/store/base64.hpp"
 #include "server/store/resumable_uploads.hpp"
 
 #include <openssl/evp.h>
@@ -46,29 +47,13 @@ std::optional<Response> refuse_version(const Request& request) {
   return with_version(std::move(response));
 }
 
-std::optional<std::string> decode_base64(std::string_view text) {
-  if (text.size() % 4 != 0) {
-    return std::nullopt;
-  }
-  std::string bytes(text.size() / 4 * 3, '\0');
-  const int count = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                                    reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
-  if (count < 0) {
-    return std::nullopt;
-  }
-  bytes.resize(static_cast<std::size_t>(count) -
-               static_cast<std::size_t>(
-                   std::count(text.end() - std::min<std::ptrdiff_t>(2, std::ssize(text)), text.end(), '=')));
-  return bytes;
-}
-
 /// The file name in Upload-Metadata, `filename <base64>,…`; empty where there is none.
 std::string file_name_in(std::string_view metadata) {
   while (!metadata.empty()) {
     const std::string_view pair = trimmed(metadata.substr(0, metadata.find(',')));
     if (const std::size_t space = pair.find(' ');
         space != std::string_view::npos && pair.substr(0, space) == "filename") {
-      return shown_file_name(decode_base64(pair.substr(space + 1)).value_or(""));
+      return shown_file_name(from_base64(std::string(pair.substr(space + 1))).value_or(""));
     }
     const std::size_t comma = metadata.find(',');
     metadata.remove_prefix(comma == std::string_view::npos ? metadata.size() : comma + 1);
@@ -147,7 +132,8 @@ class Checksum {
     const std::size_t space = header.find(' ');
     const std::string_view name = header.substr(0, space);
     const EVP_MD* const method = name == "sha256" ? EVP_sha256() : name == "sha1" ? EVP_sha1() : nullptr;
-    const auto expected = space == std::string_view::npos ? std::nullopt : decode_base64(trimmed(header.substr(space)));
+    const auto expected =
+        space == std::string_view::npos ? std::nullopt : from_base64(std::string(trimmed(header.substr(space))));
     if (method == nullptr || !expected) {
       return fail(ErrorCode::InvalidArgument, "Upload-Checksum is sha256 or sha1, a space and the digest in base64.",
                   {{"parameter", "Upload-Checksum"}});

@@ -1,11 +1,9 @@
 #include "server/store/postgres/database_files.hpp"
 
+#include "server/store/base64.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
 
-#include <openssl/evp.h>
-
-#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <utility>
@@ -35,31 +33,6 @@ constexpr std::string_view kRemoveOld =
 constexpr std::string_view kRemoveUnfinished = "DELETE FROM stored_files WHERE kind IS NULL AND written_at < ?1";
 constexpr std::string_view kOld =
     "SELECT DISTINCT blob FROM stored_files WHERE kind IS NOT NULL AND written_at < ?1 ORDER BY blob";
-
-std::string to_base64(std::span<const std::byte> bytes) {
-  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
-/// The server breaks lines, which are left out; nothing for what is no base64.
-std::optional<std::string> from_base64(std::string text) {
-  std::erase(text, '\n');
-  std::string bytes(text.size() / 4 * 3, '\0');
-  const int length =
-      EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                      reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
-  if (length < 0) {
-    return std::nullopt;
-  }
-  const auto padding = static_cast<std::size_t>(
-      std::count(text.end() - std::min<long>(2, static_cast<long>(text.size())), text.end(), '='));
-  bytes.resize(static_cast<std::size_t>(length) - padding);
-  return bytes;
-}
 
 /// Gives `use` the file in parts. Errors: Io; those of `use`.
 Status for_each_part(const fs::path& path, const std::function<Status(std::span<const std::byte>)>& use) {
@@ -191,7 +164,7 @@ Status DatabaseFiles::store_file(const std::string& blob, const LocalFile& file)
   }
   std::int64_t number = 0;
   Status written = for_each_part(file.path, [&](std::span<const std::byte> part) {
-    const std::string text = to_base64(part);
+    const std::string text = to_base64({reinterpret_cast<const char*>(part.data()), part.size()});
     return database_
         .write(WriteKind::Fenced,
                [&](Connection& connection) -> Result<int> {
