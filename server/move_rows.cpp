@@ -304,6 +304,7 @@ const std::vector<MovedTable>& moved_tables() {
       {"jobs", "id"},
       {"job_events", "sequence"},
       {"job_attempts", "job_id,attempt"},
+      {"job_parts", "job_id,number"},
       {"job_results", "job_id"},
       {"channel_results", "sequence"},
       {"fits", "id"},

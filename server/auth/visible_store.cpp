@@ -125,6 +125,7 @@ class VisibleStore final : public Store {
                                    const std::vector<KnownKind>& known) override {
     return whole_.claim(lease_micros, running_per_token, known);
   }
+  PartStore& parts() override { return whole_.parts(); }
   Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override {
     return whole_.renew(lease, lease_micros);
   }

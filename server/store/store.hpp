@@ -183,6 +183,8 @@ struct AttemptFailure {
   bool fault_signal = false;  ///< the job's own work raised SIGSEGV or the like: twice is `dead`
 };
 
+class PartStore;
+
 class Store {
  public:
   Store() = default;
@@ -291,6 +293,9 @@ class Store {
   [[nodiscard]] virtual Result<int> end_all_leases() = 0;
   [[nodiscard]] virtual Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence,
                                                                    int limit) = 0;
+
+  /// The parts of running jobs. Belongs to this store.
+  [[nodiscard]] virtual PartStore& parts() = 0;
 
   // ---- results
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;

@@ -29,14 +29,9 @@ namespace {
   "running ON running.token_id = owners.token_id WHERE owners.object_id = (SELECT id FROM jobs WHERE state = "      \
   "'queued' AND asked_by = who ORDER BY priority, run_at, id LIMIT 1)), 0) FROM askers WHERE who IS NOT NULL), "    \
   "ranks (rank) AS (VALUES (0), (1), (2), (3), (4), (5), (6), (7), (8), (9)) "
-/// A canonical request begins with its version, for its members are sorted.
-#define DRIFTLAB_CAN_RUN                                                                                         \
-  "(?6 = '[]' OR jobs.kind || ' ' || CASE substr(jobs.request_json, 1, 21) WHEN '{\"algorithm_version\":' THEN " \
-  "substr(jobs.request_json, 22, CAST(instr(substr(jobs.request_json, 22, 12) || ',', ',') AS INTEGER) - 1) "    \
-  "ELSE '0' END IN (SELECT value FROM json_each(?6)))"
 #define DRIFTLAB_HEAD                                                                                          \
   "FROM jobs WHERE state = 'queued' AND asked_by = who AND priority = rank AND (run_at <= ?1 OR failures = 0 " \
-  "OR run_at > ?1 + ?3) AND " DRIFTLAB_CAN_RUN " ORDER BY run_at, id LIMIT "
+  "OR run_at > ?1 + ?3) AND " DRIFTLAB_CAN_RUN("?6") " ORDER BY run_at, id LIMIT "
 #define DRIFTLAB_BESIDE "(SELECT beside FROM besides WHERE who = jobs.asked_by)"
 #define DRIFTLAB_BEST(LARGER) \
   " ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER "(0, ?1 - run_at) / ?4, run_at, id LIMIT 1"
@@ -147,18 +142,6 @@ std::optional<JobState> end_after(const AttemptFailure& failure, const HeldJob& 
     return JobState::Dead;
   }
   return job.cancel_requested ? std::optional(JobState::Cancelled) : std::nullopt;
-}
-
-/// `["pool 0","pool 1"]`: each kind with every version up to the one that the process has; names are plain words.
-std::string can_run(const std::vector<KnownKind>& known) {
-  std::string list = "[";
-  for (const KnownKind& kind : known) {
-    for (int version = 0; version <= kind.version; ++version) {
-      list.append(list.size() > 1 ? ",\"" : "\"").append(kind.name).append(" ");
-      list.append(std::to_string(version)).append("\"");
-    }
-  }
-  return list + "]";
 }
 
 }  // namespace

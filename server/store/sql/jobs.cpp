@@ -92,6 +92,17 @@ JobEvent read_event(const Statement& row) {
 
 }  // namespace
 
+std::string can_run(const std::vector<KnownKind>& known) {
+  std::string list = "[";
+  for (const KnownKind& kind : known) {
+    for (int version = 0; version <= kind.version; ++version) {
+      list.append(list.size() > 1 ? ",\"" : "\"").append(kind.name).append(" ");
+      list.append(std::to_string(version)).append("\"");
+    }
+  }
+  return list + "]";
+}
+
 Job read_job(const Statement& row) {
   Job job;
   job.id = row.text(0);

@@ -42,7 +42,8 @@ SqlStore::SqlStore(std::unique_ptr<Database> database, std::uint64_t jitter_seed
       jitter_(jitter_seed),
       audited_(*database_, std::move(audited)),
       access_(*database_, audited_),
-      webhooks_(*database_, audited_) {}
+      webhooks_(*database_, audited_),
+      parts_(*database_) {}
 
 template <class Work>
 Status SqlStore::remove(const char* action, std::string_view id, const Work& work) {

@@ -4,6 +4,7 @@
 #include "server/store/checksums.hpp"
 #include "server/store/sql/database.hpp"
 #include "server/store/sql/sql_access.hpp"
+#include "server/store/sql/sql_parts.hpp"
 #include "server/store/sql/sql_webhooks.hpp"
 #include "server/store/store.hpp"
 #include "server/store/webhook_store.hpp"
@@ -31,6 +32,7 @@ class SqlStore : public Store {
   [[nodiscard]] AccessStore& access() { return access_; }
   /// Webhooks and their deliveries. Lives as long as the store.
   [[nodiscard]] WebhookStore& webhooks() { return webhooks_; }
+  [[nodiscard]] PartStore& parts() override { return parts_; }
 
   /// How long writes have taken since the start.
   [[nodiscard]] WriteTimes::Counts write_times() const { return database_->write_times(); }
@@ -163,6 +165,7 @@ class SqlStore : public Store {
   AuditedWriter audited_;
   SqlAccess access_;
   SqlWebhooks webhooks_;
+  SqlParts parts_;
 };
 
 }  // namespace driftlab::server
