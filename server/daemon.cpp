@@ -135,7 +135,7 @@ struct Daemon::Parts {
   [[nodiscard]] Hints hints() {
     Hints hints;
     hints.job = [this](const std::string& id, std::string_view what) {
-      if (what == "queued" || what == "cancel") {
+      if (what == "queued" || what == "parts" || what == "cancel") {
         workers.wake();
       }
       bell.ring(id);

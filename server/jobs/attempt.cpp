@@ -14,7 +14,8 @@
 namespace driftlab::server {
 
 Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, MemoryGate& memory,
-                 const WorkerOptions& options, const std::function<void(const std::string&)>& changed)
+                 const WorkerOptions& options, const std::function<void(const std::string&)>& changed,
+                 std::function<void()> divided)
     : job_(std::move(job)),
       lease_{job_.id, job_.attempt},
       kind_(kind),
@@ -22,7 +23,8 @@ Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& ex
       executor_(executor),
       memory_(memory),
       options_(options),
-      changed_(changed) {}
+      changed_(changed),
+      divided_(std::move(divided)) {}
 
 template <class Part>
 auto Attempt::charged(const Part& part) -> decltype(part()) {
@@ -57,6 +59,9 @@ void Attempt::carry_out() {
     changed_(job_.id);
   }
   const Result<JobResults> results = charged([this] { return work(); });
+  if (const auto parts = running_parts()) {
+    parts->put_back();  // where an exception left one
+  }
   if (results) {
     finish(*results);
   } else {
@@ -87,13 +92,26 @@ Result<JobResults> Attempt::work() {
   if (!request) {
     return driftlab::fail(request.error());
   }
-  const MemoryGate::Share memory(memory_, kind_->cost(*request, context_).memory_bytes, control.stop,
-                                 [this] { report("wait for memory", 0.0); });
+  const JobCost cost = kind_->cost(*request, context_);
+  const MemoryGate::Share memory(memory_, cost.memory_bytes, control.stop, [this] { report("wait for memory", 0.0); });
   if (!memory.held()) {
     return driftlab::fail(ErrorCode::Cancelled, "The job was stopped while it waited for memory.");
   }
   const Executor::Seat seat(executor_);
-  return kind_->run(*request, context_, control);
+  if (const auto shared = parts_for(cost)) {
+    return kind_->run_in_parts(*request, context_, control, *shared);
+  }
+  PartsHere here;
+  return kind_->run_in_parts(*request, context_, control, here);
+}
+
+std::shared_ptr<SharedParts> Attempt::parts_for(const JobCost& cost) {
+  if (cost.seconds + cost.shared_seconds < options_.worth_sharing_seconds) {
+    return nullptr;
+  }
+  const std::lock_guard<std::mutex> guard(parts_mutex_);
+  parts_ = std::make_shared<SharedParts>(context_.store.parts(), lease_, options_.lease_micros, divided_);
+  return parts_;
 }
 
 bool Attempt::too_early() const {
@@ -116,7 +134,6 @@ void Attempt::report(std::string_view stage, double fraction) {
 }
 
 void Attempt::mind_deadline() {
-  const FaultScope scope(lease_);
   const auto most = std::chrono::seconds(context_.budgets.job_seconds);
   if (!too_long_ && std::chrono::steady_clock::now() - begun_ > most) {
     too_long_ = true;
@@ -125,7 +142,6 @@ void Attempt::mind_deadline() {
 }
 
 void Attempt::catch_up() {
-  const FaultScope scope(lease_);
   const std::lock_guard<std::mutex> guard(progress_mutex_);
   if (thinned_ && !too_early()) {
     tell(Progress(*thinned_));
@@ -156,13 +172,29 @@ void Attempt::learn(const LeaseStatus& status) {
   stop_.request_stop();
 }
 
-void Attempt::renew() {
+void Attempt::tend(bool renew) {
   const FaultScope scope(lease_);
+  mind_deadline();
+  catch_up();
+  if (renew) {
+    renew_lease();
+  }
+}
+
+void Attempt::renew_lease() {
   // A renewal that the store could not write is tried again at the next beat; the lease spans four of them.
   const Result<LeaseStatus> renewed = context_.store.renew(lease_, options_.lease_micros);
   if (renewed) {
     learn(*renewed);
   }
+  if (const auto parts = running_parts()) {
+    parts->renew();
+  }
+}
+
+std::shared_ptr<SharedParts> Attempt::running_parts() {
+  const std::lock_guard<std::mutex> guard(parts_mutex_);
+  return parts_;
 }
 
 void Attempt::ask_to_stop() {
@@ -175,6 +207,9 @@ void Attempt::hand_back() {
   const FaultScope scope(lease_);
   lost_ = true;
   stop_.request_stop();
+  if (const auto parts = running_parts()) {
+    parts->put_back();
+  }
   const Result<LeaseStatus> released = context_.store.release(lease_);
   ended(released, "released");
   announce(released);

@@ -8,11 +8,14 @@
 /// whichever thread (fault_recorder.hpp), and an exception in `run`, which stores it as the attempt's failure and
 /// throws none.
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/job_parts.hpp"
+#include "server/jobs/work.hpp"
 #include "server/jobs/worker_pool.hpp"
 
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -21,26 +24,31 @@
 
 namespace driftlab::server {
 
-class Attempt {
+class Attempt final : public Work {
  public:
-  /// `kind` may be null: the attempt then fails for good.
+  /// `kind` may be null: the attempt then fails for good. `divided` is called when other workers can help.
   Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, MemoryGate& memory,
-          const WorkerOptions& options, const std::function<void(const std::string&)>& changed);
+          const WorkerOptions& options, const std::function<void(const std::string&)>& changed,
+          std::function<void()> divided = {});
 
   /// Waits for a seat of the executor, runs the job there and writes how it ended.
-  void run();
-  /// Ends the work where it has taken the time that a job may take.
-  void mind_deadline();
-  /// Writes progress that was thinned out, where its time has come.
-  void catch_up();
-  /// Renews the lease; learns of a lost lease or a cancel request and then stops the work.
-  void renew();
-  /// The daemon is stopping: the work is to end, and the job goes back to the queue.
-  void ask_to_stop();
-  /// The time to end is over: the job goes back to the queue now, and what the work still finds is discarded.
-  void hand_back();
+  void run() override;
+  /// Ends the work where it has taken the time that a job may take, writes progress that was thinned out where its time
+  /// has come, and renews the lease.
+  void tend(bool renew) override;
+  /// The work is to end, and the job goes back to the queue.
+  void ask_to_stop() override;
+  /// The job goes back to the queue now, and what the work still finds is discarded.
+  void hand_back() override;
 
  private:
+  void mind_deadline();
+  void catch_up();
+  /// Learns of a lost lease or a cancel request and then stops the work.
+  void renew_lease();
+  /// The parts of this job, where it is to be divided; else it is not shared.
+  [[nodiscard]] std::shared_ptr<SharedParts> parts_for(const JobCost& cost);
+  [[nodiscard]] std::shared_ptr<SharedParts> running_parts();
   /// What `part` returns, or as an error the exception that escaped from it.
   template <class Part>
   [[nodiscard]] auto charged(const Part& part) -> decltype(part());
@@ -74,6 +82,7 @@ class Attempt {
   MemoryGate& memory_;
   const WorkerOptions& options_;
   const std::function<void(const std::string&)>& changed_;
+  const std::function<void()> divided_;
   std::stop_source stop_;
   std::atomic<bool> lost_{false};
   std::atomic<bool> cancel_requested_{false};
@@ -82,8 +91,10 @@ class Attempt {
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   bool out_of_memory_ = false;
   std::atomic<bool> settled_{false};  ///< the store was told how the attempt ended
-  std::mutex progress_mutex_;         ///< also orders the writes of the worker and of the heartbeat
-  std::optional<Progress> thinned_;   ///< the last report that was not written
+  std::mutex parts_mutex_;
+  std::shared_ptr<SharedParts> parts_;  ///< once the work has begun, where the job is divided
+  std::mutex progress_mutex_;           ///< also orders the writes of the worker and of the heartbeat
+  std::optional<Progress> thinned_;     ///< the last report that was not written
   std::optional<std::chrono::steady_clock::time_point> reported_at_;
 };
 

@@ -6,14 +6,17 @@
 #include "schema/json/characterise.hpp"
 
 #include "core/analysis/characterise_campaign.hpp"
+#include "core/analysis/characterise_channels.hpp"
 #include "core/analysis/told_characterisation.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/job_parts.hpp"
 #include "server/jobs/line_verdicts.hpp"
 #include "server/jobs/stored_recordings.hpp"
 #include "server/jobs/told_glance.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -80,6 +83,30 @@ Result<Inputs> read_inputs(const Json& document, JobContext& context, Faults& fa
   return inputs;
 }
 
+/// All channels of the recordings, wherever each is characterised.
+Result<std::vector<CharacterisedRecording>> characterise_in_parts(StoredRecordings& recordings,
+                                                                  const CharacteriseOptions& options,
+                                                                  const RunControl& control, JobParts& parts) {
+  std::vector<std::size_t> expected;
+  for (std::size_t i = 0; i < recordings.count(); ++i) {
+    const auto channels = recordings.expected_channels(i);
+    if (!channels) {
+      return fail(recordings.located(i, channels.error()));
+    }
+    expected.push_back(*channels);
+  }
+  CampaignChannels channels(recordings, options, expected);
+  const auto compute = [&](std::size_t number, const RunControl& part) { return channels.characterise(number, part); };
+  const auto take = [&](CharacterisedRecording one) -> Result<bool> {
+    channels.add(std::move(one));
+    return true;
+  };
+  if (auto shared = share_values<CharacterisedRecording>(parts, channels.count(), compute, take, control); !shared) {
+    return fail(shared.error());
+  }
+  return std::move(channels.found());
+}
+
 using ResultIds = std::map<std::pair<std::string, std::string>, std::string>;  ///< by recording and column
 
 /// The compiler's view of the machine: results name it, because other instruction sets may round differently.
@@ -142,6 +169,12 @@ class Characterise final : public JobKind {
 
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
+    PartsHere here;
+    return run_in_parts(request, context, control, here);
+  }
+
+  [[nodiscard]] Result<JobResults> run_in_parts(const Json& request, JobContext& context, const RunControl& control,
+                                                JobParts& parts) const override {
     Faults faults;
     const CharacteriseOptions options = characterise_options_from_json(request["parameters"], "/parameters", faults);
     if (!faults.none()) {
@@ -152,11 +185,16 @@ class Characterise final : public JobKind {
       one.name = one.id;
     }
     StoredRecordings recordings(context.store, context.blobs, std::move(wanted), context.verify_columns);
+    auto characterised = characterise_in_parts(recordings, options, part_of(control, 0.0, kRecordingsShare), parts);
+    if (!characterised) {
+      return fail(characterised.error());
+    }
     ResultIds ids;
     const auto named = [&](const std::string& recording, const std::string& column) {
       return ids.try_emplace({recording, column}, make_id("chr", context.clock.now())).first->second;
     };
-    const auto found = characterise_campaign(recordings, options, control, named);
+    const auto found =
+        summarise_characterised(std::move(*characterised), part_of(control, kRecordingsShare, 1.0), named);
     if (!found) {
       return fail(found.error());
     }

@@ -28,6 +28,8 @@ struct JobContext {
   int computing = 0;  ///< threads that jobs share; 0: one for each core
 };
 
+class JobParts;
+
 class JobKind {
  public:
   JobKind() = default;
@@ -54,6 +56,13 @@ class JobKind {
   /// Must not write to the store.
   [[nodiscard]] virtual Result<JobResults> run(const Json& request, JobContext& context,
                                                const RunControl& control) const = 0;
+
+  /// The same where other workers may help: what of the work can be divided goes through `parts` (job_parts.hpp). A
+  /// kind whose work cannot leaves this to `run`.
+  [[nodiscard]] virtual Result<JobResults> run_in_parts(const Json& request, JobContext& context,
+                                                        const RunControl& control, JobParts& /*parts*/) const {
+    return run(request, context, control);
+  }
 };
 
 /// The job that `inputs` and `parameters` ask of `kind`, ready to be queued: its request is the canonical text (sorted

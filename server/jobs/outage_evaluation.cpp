@@ -9,6 +9,7 @@
 
 #include "schema/json/outage_scenario.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/job_parts.hpp"
 #include "server/jobs/stored_models.hpp"
 
 #include <algorithm>
@@ -86,26 +87,39 @@ class OutageEvaluationKind final : public JobKind {
     return cost;
   }
 
-  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& /*context*/,
+  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
+    PartsHere here;
+    return run_in_parts(request, context, control, here);
+  }
+
+  [[nodiscard]] Result<JobResults> run_in_parts(const Json& request, JobContext& /*context*/, const RunControl& control,
+                                                JobParts& parts) const override {
     Faults faults;
     const OutageScenario scenario = scenario_or_name(request["inputs"]["scenario"], "/inputs/scenario", faults);
     const OutageOptions options = outage_options_from_json(request["parameters"], "/parameters", faults);
     if (!faults.none()) {
       return fail(faults.error());
     }
-    auto report = report_outages(scenario, options, control);
-    if (!report) {
-      return fail(report.error());
+    control.report("trajectory", 0.0);
+    auto batches = OutageBatches::make(scenario, options, control.stop);
+    if (!batches) {
+      return fail(batches.error());
     }
+    const auto compute = [&](std::size_t number, const RunControl& part) { return batches->run(number, part); };
+    const auto take = [&](OutageBatch batch) { return batches->add(std::move(batch)); };
+    if (auto shared = share_values<OutageBatch>(parts, batches->count(), compute, take, control); !shared) {
+      return fail(shared.error());
+    }
+    const OutageReport report = report_of(scenario, batches->evaluate());
     JobResults results;
-    Json document = to_json(*report);
+    Json document = to_json(report);
     if (const Json& inputs = request["inputs"]; inputs.contains("left_out")) {
       document["left_out"] = inputs["left_out"];
     }
     results.document_json = to_text(document);
     results.verdicts.push_back(
-        {.level = std::string(driftlab::name_of(report->summary.level)), .verdict = report->summary.sentence});
+        {.level = std::string(driftlab::name_of(report.summary.level)), .verdict = report.summary.sentence});
     return results;
   }
 };

@@ -1,5 +1,6 @@
 #include "server/jobs/stored_recordings.hpp"
 
+#include "core/analysis/characterise_channels.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/jobs/recording_calibration.hpp"
 
@@ -27,7 +28,7 @@ StoredRecordings::StoredRecordings(Store& store, BlobStore& blobs, std::vector<S
       rows_(wanted_.size()),
       specs_(wanted_.size()) {}
 
-Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunControl& /*control*/) {
+Status StoredRecordings::read_row(std::size_t index) {
   const StoredRecordingRequest& wanted = wanted_[index];
   auto row = store_.recording(wanted.id);
   if (!row) {
@@ -49,18 +50,42 @@ Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunContr
   if (!faults.none()) {
     return fail(faults.error());
   }
-  if (auto verified = verify_columns_ ? verify_columns_(row->blob_sha256) : Status{}; !verified) {
+  specs_[index] = std::move(spec);
+  rows_[index] = std::move(*row);
+  return {};
+}
+
+Result<std::size_t> StoredRecordings::expected_channels(std::size_t index) {
+  if (const Status read = read_row(index); !read) {
+    return fail(read.error());
+  }
+  const auto blob = store_.blob(rows_[index].blob_sha256);
+  if (!blob) {
+    return fail(blob.error());
+  }
+  const auto names = *blob ? parse_json((*blob)->columns_json) : Result<Json>(Json::array());
+  if (!names) {
+    return fail(names.error());
+  }
+  return driftlab::expected_channels(specs_[index], names->get<ColumnNames>());
+}
+
+Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunControl& /*control*/) {
+  if (const Status read = read_row(index); !read) {
+    return fail(read.error());
+  }
+  const std::string& blob = rows_[index].blob_sha256;
+  if (auto verified = verify_columns_ ? verify_columns_(blob) : Status{}; !verified) {
     return fail(verified.error());
   }
-  auto columns = ColumnFile::open(blobs_.columns_path(row->blob_sha256));
+  auto columns = ColumnFile::open(blobs_.columns_path(blob));
   if (!columns) {
     return fail(columns.error());
   }
-  specs_[index] = spec;
-  if (!wanted.name.empty()) {
-    spec.id = wanted.name;
+  RecordingSpec spec = specs_[index];
+  if (!wanted_[index].name.empty()) {
+    spec.id = wanted_[index].name;
   }
-  rows_[index] = std::move(*row);
   const auto device = store_.device(rows_[index].device_id);
   if (!device) {
     return fail(device.error());

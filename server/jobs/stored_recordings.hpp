@@ -40,7 +40,11 @@ class StoredRecordings : public RecordingSource {
   /// With the field "recording".
   [[nodiscard]] Error located(std::size_t index, Error error) const override;
 
-  /// The row of a recording that was opened.
+  /// How many channels a recording has, as its columns are named (core/analysis/characterise_channels.hpp). Opens no
+  /// file. Errors: those of `open` that the rows show.
+  [[nodiscard]] Result<std::size_t> expected_channels(std::size_t index);
+
+  /// The row of a recording that was opened, or of which `expected_channels` was asked.
   [[nodiscard]] const Recording& row(std::size_t index) const { return rows_[index]; }
 
  protected:
@@ -48,12 +52,15 @@ class StoredRecordings : public RecordingSource {
   [[nodiscard]] virtual Status admit(const Recording& /*row*/) const { return {}; }
 
  private:
+  /// Reads the row and what it says of the recording.
+  [[nodiscard]] Status read_row(std::size_t index);
+
   Store& store_;
   BlobStore& blobs_;
   std::function<Status(const std::string&)> verify_columns_;
   std::vector<StoredRecordingRequest> wanted_;
   std::vector<Recording> rows_;
-  std::vector<RecordingSpec> specs_;  ///< the metadata of each that was opened
+  std::vector<RecordingSpec> specs_;  ///< the metadata of each whose row was read
 };
 
 }  // namespace driftlab::server

@@ -1,6 +1,7 @@
 #include "server/jobs/worker_pool.hpp"
 
 #include "server/jobs/attempt.hpp"
+#include "server/jobs/helping.hpp"
 #include "server/jobs/maintenance.hpp"
 #include "server/store/guarded_round.hpp"
 
@@ -31,11 +32,12 @@ struct WorkerPool::Implementation {
   void wake();
   void work();
   void beat();
-  /// What one beat does for one attempt; an exception there leaves the others theirs.
-  static void tend(Attempt& attempt, bool renew);
-  [[nodiscard]] std::vector<std::shared_ptr<Attempt>> attempts();
-  /// Runs the next job if one is due. False: none was, or the store did not answer.
+  [[nodiscard]] std::vector<std::shared_ptr<Work>> works();
+  /// Runs the next job if one is due, or helps with one that runs. False: there was nothing to do, or the store did not
+  /// answer.
   [[nodiscard]] bool run_next();
+  [[nodiscard]] bool help();
+  void carry_out(const std::shared_ptr<Work>& work);
 
   JobContext context;
   const WorkerOptions options;
@@ -48,7 +50,7 @@ struct WorkerPool::Implementation {
   std::mutex mutex;
   std::condition_variable woken;    ///< workers and the heartbeat wait for it
   std::condition_variable drained;  ///< `stop` waits for it
-  std::vector<std::shared_ptr<Attempt>> running;
+  std::vector<std::shared_ptr<Work>> running;
   std::uint64_t wakes = 0;
   bool stopping = false;
   bool beating = true;
@@ -74,7 +76,7 @@ void WorkerPool::Implementation::wake() {
   woken.notify_all();
 }
 
-std::vector<std::shared_ptr<Attempt>> WorkerPool::Implementation::attempts() {
+std::vector<std::shared_ptr<Work>> WorkerPool::Implementation::works() {
   const std::lock_guard<std::mutex> guard(mutex);
   return running;
 }
@@ -100,36 +102,42 @@ bool WorkerPool::Implementation::run_next() {
       context.store.claim(options.lease_micros, context.budgets.running_jobs_per_token, options.known)
           .value_or(std::nullopt);
   if (!claimed) {
-    return false;
+    return help();
   }
   const JobKind* kind = kinds(claimed->kind);
-  const auto attempt =
-      std::make_shared<Attempt>(std::move(*claimed), kind, context, executor, memory, options, changed);
+  carry_out(std::make_shared<Attempt>(std::move(*claimed), kind, context, executor, memory, options, changed,
+                                      [this] { wake(); }));
+  return true;
+}
+
+bool WorkerPool::Implementation::help() {
+  std::optional<Job> job = context.store.parts().job_to_help(options.known, DRIFTLAB_VERSION).value_or(std::nullopt);
+  const JobKind* const kind = job ? kinds(job->kind) : nullptr;
+  if (kind == nullptr) {
+    return false;
+  }
+  const auto helping = std::make_shared<Helping>(std::move(*job), *kind, context, executor, memory, options);
+  carry_out(helping);
+  return helping->helped();
+}
+
+void WorkerPool::Implementation::carry_out(const std::shared_ptr<Work>& work) {
   bool too_late = false;
   {
     const std::lock_guard<std::mutex> guard(mutex);
-    running.push_back(attempt);
+    running.push_back(work);
     too_late = stopping;
   }
   woken.notify_all();
   if (too_late) {
-    attempt->ask_to_stop();
+    work->ask_to_stop();
   }
-  (void)guarded_round("worker", [&] { attempt->run(); });
+  (void)guarded_round("worker", [&] { work->run(); });
   {
     const std::lock_guard<std::mutex> guard(mutex);
-    running.erase(std::find(running.begin(), running.end(), attempt));
+    running.erase(std::find(running.begin(), running.end(), work));
   }
   drained.notify_all();
-  return true;
-}
-
-void WorkerPool::Implementation::tend(Attempt& attempt, bool renew) {
-  attempt.mind_deadline();
-  attempt.catch_up();
-  if (renew) {
-    attempt.renew();
-  }
 }
 
 void WorkerPool::Implementation::beat() {
@@ -150,8 +158,8 @@ void WorkerPool::Implementation::beat() {
     }
     guard.unlock();
     (void)guarded_round("heartbeat", [&] {
-      for (const auto& attempt : attempts()) {
-        (void)guarded_round("heartbeat", [&] { tend(*attempt, renew); });
+      for (const auto& work : works()) {  // an exception of one leaves the others theirs
+        (void)guarded_round("heartbeat", [&] { work->tend(renew); });
       }
     });
     guard.lock();
@@ -164,8 +172,8 @@ void WorkerPool::Implementation::ask_to_stop() {
     stopping = true;
   }
   woken.notify_all();
-  for (const auto& attempt : attempts()) {
-    attempt->ask_to_stop();
+  for (const auto& work : works()) {
+    work->ask_to_stop();
   }
 }
 
@@ -174,8 +182,8 @@ void WorkerPool::Implementation::stop() {
   std::unique_lock<std::mutex> guard(mutex);
   drained.wait_for(guard, std::chrono::microseconds(options.grace_micros), [this] { return running.empty(); });
   guard.unlock();
-  for (const auto& attempt : attempts()) {
-    (void)guarded_round("hand back", [&] { attempt->hand_back(); });
+  for (const auto& work : works()) {
+    (void)guarded_round("hand back", [&] { work->hand_back(); });
   }
   for (std::thread& worker : workers) {
     worker.join();

@@ -5,7 +5,8 @@
 /// stop token. Failed attempts are retried only for retryable codes (Io, DiskFull, Internal from std::bad_alloc). An
 /// idle worker sleeps until `wake` or one second. On `stop` running jobs are asked to stop and get 20 s to end, then
 /// are released. A job may hand independent tasks to the threads that no other job computes on; a fault or an exception
-/// there counts against that job's attempt, as one in its worker does. The rules of states and retries:
+/// there counts against that job's attempt, as one in its worker does. A worker without a job helps with the parts of a
+/// long one, also where that runs in another process. The rules of states and retries:
 /// server/jobs/README.md.
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/maintenance.hpp"
@@ -30,6 +31,11 @@ struct WorkerOptions {
   /// Progress is written at most once in this time (a commit each: a job of many short stages would wait for little
   /// else); what comes sooner is written when the time is over, by the heartbeat where the job says nothing more.
   std::int64_t progress_micros = 100'000;
+  /// A job that will take longer than this is divided among workers (server/jobs/job_parts.hpp); one without parts, or
+  /// shorter, is not worth the writes.
+  double worth_sharing_seconds = 2.0;
+  /// How long an idle worker helps with a job of others before it looks for one of its own again.
+  std::int64_t helping_micros = 2'000'000;
   /// Runs the maintenance (server/jobs/maintenance.hpp) beside the workers.
   bool maintain = true;
   MaintenanceOptions maintenance = {};

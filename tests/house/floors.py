@@ -20,7 +20,7 @@ INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrat
 ANALYSIS = [*CORE, "core/datasheet", "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
-RESULTS = ["core/signal", "core/datasheet", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema"]
+RESULTS = ["core/signal", "core/datasheet", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema/snapshot", "schema"]
 # Documents are of these: core/export writes no document of its own, and the other rooms of an investigation are its arithmetic.
 DOCUMENTED = [*CORE, "core/datasheet", "core/campaign", "core/calibrate", "core/navigate", "core/investigate",
               *(f"core/investigate/{room}" for room in ("study", "causes", "unnamed", "search", "report")), "core/read", "core/analysis"]
@@ -44,6 +44,7 @@ FLOORS: dict[str, list[str]] = {
     "schema/figure": ["core/signal"],  # drawings: data in, nothing known of where they come from
     "schema/json": [*DOCUMENTED, "schema/figure"],
     "schema/text": [*USE_CASES, "schema/figure"],  # for people: tables and lines, of the same types and without a document in between
+    "schema/snapshot": CORE,  # results as bytes, from one process to another
     "schema/shell": [],  # what --help knows, as manuals and completions
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],

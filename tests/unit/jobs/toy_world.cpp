@@ -31,9 +31,13 @@ WorkerOptions ToyWorld::quiet(int threads) {
 }
 
 std::unique_ptr<WorkerPool> ToyWorld::pool(WorkerOptions options) {
+  return pool_of(std::move(options),
+                 [this](std::string_view name) -> const JobKind* { return name == kind.name() ? &kind : nullptr; });
+}
+
+std::unique_ptr<WorkerPool> ToyWorld::pool_of(WorkerOptions options, JobKindLookup kinds) {
   return std::make_unique<WorkerPool>(
-      context(), std::move(options), [this](const std::string& id) { changed(id); },
-      [this](std::string_view name) -> const JobKind* { return name == kind.name() ? &kind : nullptr; });
+      context(), std::move(options), [this](const std::string& id) { changed(id); }, std::move(kinds));
 }
 
 std::string ToyWorld::add_toy(const std::string& key) {

@@ -60,6 +60,8 @@ class ToyWorld {
   [[nodiscard]] JobContext context() { return {*store, *blobs, clock}; }
   /// A pool whose heart beats only when woken, unless `options` says otherwise.
   std::unique_ptr<WorkerPool> pool(WorkerOptions options);
+  /// The same with kinds of one's own.
+  std::unique_ptr<WorkerPool> pool_of(WorkerOptions options, JobKindLookup kinds);
   static WorkerOptions quiet(int threads = 1);
 
   std::string add_toy(const std::string& key = "key");
