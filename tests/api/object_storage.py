@@ -11,6 +11,7 @@ import http.client
 import http.server
 import shutil
 import socket
+import ssl
 import struct
 import subprocess
 import sys
@@ -110,7 +111,8 @@ STATUSES = {"unavailable": (503, "SlowDown"), "broken": (500, "InternalError"), 
 class FaultyWay:
     """Hands requests on to a storage, but for what `fault` says. `seen` counts requests, also those it kept."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, tls: ssl.SSLContext | None = None) -> None:
+        """With `tls` it is asked by HTTPS."""
         self.upstream = port
         self.fault: Fault | None = None
         self.seen: list[str] = []
@@ -123,7 +125,7 @@ class FaultyWay:
             def handle_one_request(self) -> None:
                 try:
                     super().handle_one_request()
-                except (ConnectionError, TimeoutError):
+                except (ConnectionError, TimeoutError, ssl.SSLError):
                     self.close_connection = True
 
             def __getattr__(self, name: str) -> object:
@@ -136,6 +138,8 @@ class FaultyWay:
 
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.daemon_threads = True
+        if tls is not None:  # each connection shakes hands in a thread of its own, when it is first read
+            self.server.socket = tls.wrap_socket(self.server.socket, server_side=True, do_handshake_on_connect=False)
         self.port = int(self.server.server_address[1])
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
 

@@ -3,52 +3,24 @@ from __future__ import annotations
 
 import secrets
 import shutil
-import socket
 import subprocess
 import tempfile
 import time
 import unittest
 from pathlib import Path
 
+import certificates
 import postgres
 import samples
 from daemon import PATIENCE_S, Daemon
 from store_test import start
 from suite import SKIPPED
 
-try:
-    subprocess.run(["openssl", "version"], check=True, capture_output=True)
-except (OSError, subprocess.CalledProcessError):
+if not certificates.can_be_made():
     print("SKIPPED: certificates of the test are made by the program openssl, which is not here")
-    raise SystemExit(SKIPPED) from None
+    raise SystemExit(SKIPPED)
 
 PASSWORD = secrets.token_hex(12)
-CURVE = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2")
-
-
-def openssl(*words: str) -> None:
-    subprocess.run(["openssl", *words], check=True, capture_output=True)
-
-
-def authority(folder: Path, name: str) -> Path:
-    openssl("req", "-x509", *CURVE, "-subj", f"/CN={name}", "-keyout", str(folder / f"{name}.key"), "-out", str(folder / f"{name}.pem"))
-    return folder / f"{name}.pem"
-
-
-def certificate(folder: Path, signed_by: Path, host: str) -> tuple[Path, Path]:
-    """A certificate of a server for one name, and its key."""
-    chain, key, request, names = (folder / f"server.{kind}" for kind in ("pem", "key", "csr", "names"))
-    openssl("req", "-new", *CURVE[:-2], "-subj", f"/CN={host}", "-keyout", str(key), "-out", str(request))
-    names.write_text(f"subjectAltName=DNS:{host}\n")
-    openssl("x509", "-req", "-in", str(request), "-CA", str(signed_by), "-CAkey", str(signed_by.with_suffix(".key")), "-CAcreateserial",
-            "-days", "2", "-extfile", str(names), "-out", str(chain))
-    return chain, key
-
-
-def free_port() -> int:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return int(found.getsockname()[1])
 
 
 class OverTls(unittest.TestCase):
@@ -58,12 +30,12 @@ class OverTls(unittest.TestCase):
     def setUpClass(cls) -> None:
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.folder.chmod(0o755)
-        cls.ours, cls.other = authority(cls.folder, "ours"), authority(cls.folder, "other")
-        cls.port = free_port()
+        cls.ours, cls.other = certificates.authority(cls.folder, "ours"), certificates.authority(cls.folder, "other")
+        cls.port = certificates.free_port()
         cls.cluster = postgres.Cluster()
         cls.addClassCleanup(cls.cluster.remove)
         data = cls.cluster.folder / "data"
-        for file in certificate(cls.folder, cls.ours, "localhost"):
+        for file in certificates.certificate(cls.folder, cls.ours, "localhost"):
             kept = data / file.name
             shutil.copy(file, kept)
             kept.chmod(0o600)
