@@ -163,6 +163,7 @@ struct Daemon::Parts {
       }
       return problem_document(error);
     };
+    options.parts_helped = [this](std::string_view kind, int parts) { metrics.count_helped(kind, parts); };
     options.attempt_ended = [this](std::string_view kind, std::string_view outcome, double seconds) {
       metrics.count_attempt(kind, outcome, seconds);
     };

@@ -23,8 +23,8 @@ class Helping final : public Work {
   void ask_to_stop() override { stop_.request_stop(); }
   void hand_back() override;
 
-  /// Whether a part was worked on: else there is nothing to gain by looking again at once.
-  [[nodiscard]] bool helped() const { return parts_.helped(); }
+  /// How many parts it has finished.
+  [[nodiscard]] int finished() const { return parts_.finished(); }
 
  private:
   const Job job_;

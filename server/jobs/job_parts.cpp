@@ -173,7 +173,7 @@ Status HelpedParts::share(std::size_t count, const Part& part, const Take& /*tak
     }
     const auto written = store_.finish_part(claim, *text);
     held_.let_go();
-    helped_ = helped_ || (written && written->held && !text->empty());
+    finished_ += written && written->held && !text->empty() ? 1 : 0;
     if (!written || !written->held || written->cancel_requested) {
       break;
     }

@@ -127,8 +127,8 @@ class HelpedParts final : public JobParts {
   // From other threads.
   [[nodiscard]] bool renew() { return held_.renew(); }
   void put_back() { held_.put_back(); }
-  /// Whether a part was finished.
-  [[nodiscard]] bool helped() const { return helped_; }
+  /// How many parts it has finished.
+  [[nodiscard]] int finished() const { return finished_; }
 
  private:
   PartStore& store_;
@@ -136,7 +136,7 @@ class HelpedParts final : public JobParts {
   const std::int64_t lease_micros_;
   const std::chrono::steady_clock::time_point until_;
   HeldPart held_;
-  bool helped_ = false;
+  int finished_ = 0;
 };
 
 }  // namespace driftlab::server

@@ -118,7 +118,10 @@ bool WorkerPool::Implementation::help() {
   }
   const auto helping = std::make_shared<Helping>(std::move(*job), *kind, context, executor, memory, options);
   carry_out(helping);
-  return helping->helped();
+  if (options.parts_helped && helping->finished() > 0) {
+    options.parts_helped(kind->name(), helping->finished());
+  }
+  return helping->finished() > 0;  // else there is nothing to gain by looking again at once
 }
 
 void WorkerPool::Implementation::carry_out(const std::shared_ptr<Work>& work) {

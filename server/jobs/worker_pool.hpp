@@ -44,6 +44,8 @@ struct WorkerOptions {
   /// Called when an attempt has ended, with the job's kind, how it ended (server/observe/metrics.hpp) and the seconds
   /// it took. May be empty.
   std::function<void(std::string_view kind, std::string_view outcome, double seconds)> attempt_ended;
+  /// Called when a worker has helped, with the kind of the job and how many of its parts it has finished. May be empty.
+  std::function<void(std::string_view kind, int parts)> parts_helped;
   /// Writes the problem document of a failed attempt; empty: a document with `code`, `detail` and `where`.
   std::function<std::string(const Error&)> problem_document;
 };

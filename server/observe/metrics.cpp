@@ -76,6 +76,11 @@ void Metrics::count_request(std::string_view method, std::string_view route, int
   bytes_out_ += bytes_out;
 }
 
+void Metrics::count_helped(std::string_view kind, int parts) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  helped_[std::string(kind)] += static_cast<std::uint64_t>(parts);
+}
+
 void Metrics::count_attempt(std::string_view kind, std::string_view outcome, double seconds) {
   const std::lock_guard<std::mutex> guard(mutex_);
   ++attempts_[{std::string(kind), std::string(outcome)}];
@@ -131,6 +136,11 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
   head(text, "driftlab_job_seconds", "histogram", "Time that an attempt took, by kind.");
   for (const auto& [kind, histogram] : job_seconds_) {
     write(text, "driftlab_job_seconds", label("kind", kind), histogram, kJobBounds);
+  }
+  head(text, "driftlab_job_parts_helped_total", "counter",
+       "Parts computed for jobs that another worker runs, by kind.");
+  for (const auto& [kind, count] : helped_) {
+    sample(text, "driftlab_job_parts_helped_total", label("kind", kind), static_cast<double>(count));
   }
   single(text, "driftlab_jobs_queued", "gauge", "Jobs that wait.", gauges.jobs_queued);
   single(text, "driftlab_jobs_running", "gauge", "Jobs that run.", gauges.jobs_running);

@@ -69,6 +69,8 @@ class Metrics {
   /// `lost`.
   void count_attempt(std::string_view kind, std::string_view outcome, double seconds);
 
+  /// Parts of a job of that kind that were computed for the worker which runs it.
+  void count_helped(std::string_view kind, int parts);
   /// One attempt at a delivery to a webhook that ended: `delivered`, `failed`, `given_up`.
   void count_delivery(std::string_view outcome);
 
@@ -98,6 +100,7 @@ class Metrics {
   std::uint64_t bytes_in_ = 0;
   std::uint64_t bytes_out_ = 0;
   std::map<std::pair<std::string, std::string>, std::uint64_t> attempts_;  ///< kind, outcome
+  std::map<std::string, std::uint64_t, std::less<>> helped_;               ///< kind
   std::map<std::string, std::uint64_t, std::less<>> deliveries_;           ///< by outcome
   std::map<std::string, Histogram<8>> job_seconds_;                        ///< by kind
 };

@@ -100,6 +100,9 @@ class JobsInParts(unittest.TestCase):
             self.assertEqual(told(workers.door, job), expected)
             self.assertEqual(workers.rows("SELECT count(*) FROM job_parts"), [[0]], "parts end with their job")
             self.assertEqual(workers.door.get(f"/v1/jobs/{job}").json["attempt"], 1)
+            pages = "\n".join(daemon.get("/metrics").text for daemon in (workers.door, *workers.running.values()))
+            helped = re.findall(r"^driftlab_job_parts_helped_total\{.*\} (\d+)$", pages, re.MULTILINE)
+            self.assertGreaterEqual(sum(map(int, helped)), 1, "two were at work at once")
 
     def test_a_campaign_is_the_same_on_three_workers(self) -> None:
         self.check(campaign)
