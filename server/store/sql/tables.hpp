@@ -4,10 +4,12 @@
 /// Functions take the connection of a running transaction; those that write take the time as `now`. Contracts are those
 /// of the methods of the same name in server/store/store.hpp.
 #include "core/signal/result.hpp"
+#include "core/signal/text.hpp"
 #include "server/store/sql/connection.hpp"
 #include "server/store/sql/seals.hpp"
 #include "server/store/store.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -101,9 +103,12 @@ class FilteredQuery {
   void made_since(std::string_view prefix, const std::optional<UtcMicros>& since) {
     where("id >= ?", since ? std::optional(first_id(prefix, *since)) : std::nullopt);
   }
-  /// Keeps rows whose `columns` contain a text, in upper or lower case of ASCII letters.
+  /// Keeps rows whose `columns` contain a text, in upper or lower case of ASCII letters. The pattern, in which any
+  /// character stands for one that patterns are made of, lets an index of trigrams find them.
   void holds(std::string_view columns, const std::optional<std::string>& text) {
-    where("instr(lower(" + std::string(columns) + "), lower(?)) > 0", text);
+    const std::string lower = "lower(" + std::string(columns) + ")";
+    where(lower + " LIKE ?", text ? std::optional(pattern_of(*text)) : std::nullopt);
+    where("instr(" + lower + ", lower(?)) > 0", text);
   }
   void where(std::string_view condition) {
     sql_.append(first_ ? " WHERE " : " AND ").append(condition);
@@ -176,6 +181,13 @@ class FilteredQuery {
   }
 
  private:
+  [[nodiscard]] static std::string pattern_of(std::string_view text) {
+    std::string pattern = "%" + lower_case(text) + "%";
+    std::replace_if(
+        pattern.begin() + 1, pattern.end() - 1, [](char c) { return c == '%' || c == '_' || c == '\\'; }, '_');
+    return pattern;
+  }
+
   std::string sql_;
   std::vector<std::string> values_;
   bool first_ = true;

@@ -116,6 +116,9 @@ TEST_P(ListStore, RecordingsAreSoughtByTextTimeAndResult) {
   EXPECT_EQ(with([](RecordingFilter& f) { f.text = "still_"; }), Ids{still.id});
   EXPECT_EQ(with([](RecordingFilter& f) { f.text = "CONSTANT_RATE"; }), Ids{table.id});
   EXPECT_EQ(with([](RecordingFilter& f) { f.text = "%"; }), Ids{}) << "what is sought is no pattern";
+  EXPECT_EQ(with([](RecordingFilter& f) { f.text = "stil__1"; }), Ids{}) << "nor is a part of it";
+  EXPECT_EQ(with([](RecordingFilter& f) { f.text = "9 a.csv"; }), Ids{table.id});
+  EXPECT_EQ(with([](RecordingFilter& f) { f.text = "\\"; }), Ids{});
   EXPECT_EQ(with([&](RecordingFilter& f) { f.text = still.id; }), Ids{still.id});
   EXPECT_EQ(with([&](RecordingFilter& f) { f.since = clock_.now(); }), Ids{still.id});
   EXPECT_EQ(with([&](RecordingFilter& f) { f.since = clock_.now() + kSecond; }), Ids{});

@@ -1,0 +1,2 @@
+-- Programs of schema 21 and later may work beside it.
+-- An index of parts of names is of databases that several daemons share: nothing to do here.
