@@ -5,6 +5,7 @@
 #include "server/http/compression.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/stored_table.hpp"
+#include "server/store/damaged_row.hpp"
 #include "server/store/digest.hpp"
 
 #include <algorithm>
@@ -33,6 +34,23 @@ constexpr auto kResultPlaces = std::to_array<ResultPlace>({
 });
 
 Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc3339(*time)) : Json(nullptr); }
+
+/// Of a damaged job nothing that it asked for is shown.
+Json request_of(const Job& job) {
+  return job.is_damaged ? Json{{"kind", job.kind},
+                               {"inputs", Json::object()},
+                               {"parameters", Json::object()},
+                               {"algorithm_version", 1}}
+                        : stored(job.request_json);
+}
+
+/// Nor how it ended, but that this is not known any more.
+Json problem_of(const Job& job) {
+  if (job.is_damaged) {
+    return stored(problem_document(damaged_row("jobs", "job", job.id)));
+  }
+  return job.problem_json.empty() ? Json(nullptr) : stored(job.problem_json);
+}
 
 }  // namespace
 
@@ -67,10 +85,10 @@ Json to_json(const Job& job) {
                 {"finished_at", time_or_null(job.finished_at)},
                 {"device_name", job.device_name.empty() ? Json(nullptr) : Json(job.device_name)},
                 {"recording_name", job.recording_name.empty() ? Json(nullptr) : Json(job.recording_name)},
-                {"request", stored(job.request_json)}};
+                {"request", request_of(job)}};
   document["result"] =
       job.state == JobState::Succeeded ? Json{{"href", "/v1/jobs/" + job.id + "/result"}} : Json(nullptr);
-  document["problem"] = job.problem_json.empty() ? Json(nullptr) : stored(job.problem_json);
+  document["problem"] = problem_of(job);
   Json attempts = Json::array();
   for (const std::string& problem : job.attempt_problems_json) {
     attempts.push_back(stored(problem));

@@ -9,7 +9,7 @@ namespace {
 Json object_summary(const Job& job, const JobResource& resource) {
   const Json whole = to_json(job);
   Json document{{"id", job.id}, {"job", Json{{"href", "/v1/jobs/" + job.id}}}};
-  document.update(resource.about(whole["request"]));
+  document.update(resource.about(job.is_damaged ? Json(nullptr) : whole["request"]));
   for (const char* const name : {"state", "stage", "progress", "created_at", "finished_at", "problem"}) {
     document[name] = whole[name];
   }

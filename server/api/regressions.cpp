@@ -70,7 +70,7 @@ Json listed(ApiContext& context, const Job& job, const std::optional<std::string
             {"worst", nullptr},
             {"between", nullptr},
             {"created_at", rfc3339(job.created_at)}};
-  const Json request = stored(job.request_json);
+  const Json request = job.is_damaged ? Json(nullptr) : stored(job.request_json);
   if (request.is_object()) {
     item["device"] = request["inputs"]["device"];
     item["baseline"] = request["inputs"]["baseline"]["label"];

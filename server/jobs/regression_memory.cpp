@@ -3,6 +3,7 @@
 #include "core/signal/text.hpp"
 #include "schema/json/recording_tags.hpp"
 #include "server/jobs/every_row.hpp"
+#include "server/store/damaged_row.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -44,8 +45,13 @@ Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device
       memory.named_[label].insert(id);
     }
   };
+  std::string damaged;
   const Status read = for_each_row([&](const Page& page) { return store.jobs(filter, page); },
                                    [&](const Job& job) {
+                                     if (job.is_damaged) {
+                                       damaged = job.id;
+                                       return;
+                                     }
                                      const auto request = parse_json(job.request_json);
                                      const bool stands = job.state == JobState::Queued ||
                                                          job.state == JobState::Running ||
@@ -69,6 +75,9 @@ Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device
                                      }
                                      memory.history_.add_run(candidate, regressed_ids(inputs["candidate"]));
                                    });
+  if (read && !damaged.empty()) {
+    return fail(damaged_row("jobs", "job", damaged));
+  }
   return read ? Result<RegressionMemory>(std::move(memory)) : fail(read.error());
 }
 

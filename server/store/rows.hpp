@@ -98,7 +98,7 @@ struct Job {
   std::optional<UtcMicros> started_at;   ///< of the latest attempt
   std::optional<UtcMicros> finished_at;  ///< set if and only if the state is terminal
   std::string problem_json;              ///< the problem document of the last failure; empty otherwise
-  bool is_damaged = false;               ///< read only: the request is not what was written
+  bool is_damaged = false;               ///< read only: the request, or what its end left, is not what was written
   std::string device_name;     ///< of the one device that its request names; empty: none, several, or not asked for
   std::string recording_name;  ///< the same of the one recording
   std::vector<std::string> attempt_problems_json;  ///< every failed attempt, oldest first (only filled by `job`)

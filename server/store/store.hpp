@@ -261,8 +261,10 @@ class Store {
   [[nodiscard]] virtual Result<bool> remove_unused_blob(std::string_view sha256) = 0;
 
   // ---- jobs (state machine: server/jobs/README.md)
+  /// An equal job that has succeeded and is damaged is made anew.
   [[nodiscard]] virtual Result<EnqueuedJob> enqueue(const NewJob& job) = 0;
   [[nodiscard]] virtual Result<Job> job(std::string_view id) = 0;
+  /// Damaged ones stand among the others with `is_damaged`, and nothing else of them is to be shown but their ids.
   [[nodiscard]] virtual Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) = 0;
   /// The next runnable job by (priority with ageing, run_at, id), now `running` with a lease; nothing if none is due.
   /// One that tokens asked for waits while each of them has `running_per_token` jobs running. Daemons that claim from

@@ -467,6 +467,43 @@ class Kept(unittest.TestCase):
             gone = daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": "*"})
             self.assertEqual(gone.status, 204, gone.describe())
 
+    def test_a_flipped_bit_in_the_problem_of_a_job_is_not_shown(self) -> None:
+        """Of a failed job and of one that succeeded: answered by its name, listed as damaged, told once and by `check`."""
+        scrubbing = ("--budget", "scrub_bytes_per_second=0")
+        with Daemon(self.folder / "data", arguments=scrubbing) as daemon:
+            short = daemon.upload(csv(3), id="short").json["id"]
+            failed = daemon.finished(daemon.characterise(short).json["id"])
+            self.assertEqual(failed["state"], "failed")
+            sound = daemon.finished(daemon.characterise(short, seed=2).json["id"])
+            evaluation = daemon.finished(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100}).json["id"])["id"]
+            self.assertEqual(daemon.terminate(), 0)
+        file, told = self.folder / "data/driftlab.db", failed["problem"]["detail"]
+        other = told[:-2] + chr(ord(told[-2]) ^ 1) + told[-1]
+        with closing(sqlite3.connect(file)) as database, database:
+            for table, key, job in (("jobs", "id", failed), ("job_attempts", "job_id", sound)):
+                change = f"UPDATE {table} SET problem_json = replace(problem_json, ?, ?) WHERE {key} = ?"
+                self.assertEqual(database.execute(change, (told, other, job["id"])).rowcount, 1)
+            database.execute("UPDATE jobs SET started_at = started_at + 1 WHERE id = ?", (evaluation,))
+        rows = {failed["id"]: f"jobs/{failed['id']}", sound["id"]: f"job_attempts/{sound['id']}/1", evaluation: f"jobs/{evaluation}"}
+        checked = tool(PROGRAM, "check", "--data", str(self.folder / "data"))
+        self.assertEqual(checked.returncode, 1)
+        for row in rows.values():
+            self.assertEqual(checked.stderr.count(f"The row {row} of the database is damaged."), 1, checked.stderr)
+        with Daemon(self.folder / "data", arguments=scrubbing) as daemon:
+            for target, row in [*((f"/v1/jobs/{job}", row) for job, row in rows.items()), (f"/v1/outage-evaluations/{evaluation}", rows[evaluation])]:
+                answer = daemon.get(target)
+                self.assertEqual((answer.status, answer.json["code"], answer.json["where"]), (500, "io", {"damaged_row": row}), answer.describe())
+            listed = {job["id"]: job for job in [*daemon.items("/v1/jobs"), *daemon.items("/v1/outage-evaluations")]}
+            for job in (failed["id"], evaluation):
+                self.assertEqual(listed[job]["problem"]["where"], {"damaged_row": rows[job]})
+            self.assertEqual(listed[sound["id"]]["problem"], sound["problem"], "its attempt is damaged, and not what is listed of it")
+            self.assertNotIn(other, json.dumps(listed))
+            self.assertEqual({state["row"] for state in daemon.get("/readyz").json["states"]}, set(rows.values()))
+            self.assertEqual(sorted(line["row"] for line in daemon.log if line.get("event") == "bad state"), sorted(rows.values()), "once")
+            again = daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100})
+            self.assertEqual(again.status, 202, "made anew")
+            self.assertNotEqual(again.json["id"], evaluation)
+
     def test_the_background_finds_damaged_rows_and_says_when_they_are_gone(self) -> None:
         with Daemon(self.folder / "data") as daemon:
             recording = daemon.upload(csv(3000)).json["id"]

@@ -43,10 +43,14 @@ END $body$;
 """
 
 
-def sealed_columns() -> dict[str, list[str]]:
-    """The columns that a seal is made of, by table, as the store's source lists them."""
-    found = re.findall(r'\{"(\w+)",\s*"[^"]*",\s*\{[^}]*\},\s*((?:"[^"]*"\s*)+)\}', SEALS.read_text("utf-8"))
-    return {name: "".join(re.findall(r'"([^"]*)"', columns)).replace(" ", "").split(",") for name, columns in found}
+def seals_of() -> dict[str, dict[str, str]]:
+    """The columns that have seals, by table, and how each is made of the others, as the store's source lists them."""
+    found = re.findall(r'\{"(\w+)",\s*"[^"]*",\s*\{[^}]*\},\s*((?:"[^"]*"\s*)+)(?:,\s*"(\w+)",\s*"([^"]*)")?\}', SEALS.read_text("utf-8"))
+    seals: dict[str, dict[str, str]] = {}
+    for table, columns, column, rows in found:
+        sealed = "".join(re.findall(r'"([^"]*)"', columns)).replace(" ", "").split(",")
+        seals.setdefault(table, {})[column or "seal"] = f"CASE WHEN {rows or 'true'} THEN {seal(sealed)} ELSE '' END"
+    return seals
 
 
 def seal(columns: list[str]) -> str:
@@ -91,12 +95,12 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
     """Copies 1 to `copies` - 1 of the only device of the store; it is copy 0 itself."""
     setting = f"SET search_path = {schema}; SET session_replication_role = replica; SET synchronous_commit = off; "
     server.sql(setting + CAMPAIGNS)
-    sealed = sealed_columns()
+    seals = seals_of()
     last = int(server.sql(setting + "SELECT max(campaign) FROM campaigns"))
     for campaign in range(last + 1):
         for table in TABLES:
             described = server.sql(f"SELECT column_name FROM information_schema.columns WHERE table_schema = '{schema}' AND table_name = '{table}' "
-                                   "AND column_name NOT IN ('sequence', 'seal') ORDER BY ordinal_position").split("\n")
+                                   "AND column_name NOT IN ('sequence', 'seal', 'end_seal') ORDER BY ordinal_position").split("\n")
             key = {"blobs": "(SELECT min(id) FROM recordings WHERE blob_sha256 = sha256 AND recordings.id IN (SELECT id FROM campaigns))",
                    "pools": "(SELECT id FROM jobs AS pool WHERE pool.unique_key = pools.unique_key AND pool.id IN (SELECT id FROM campaigns))"}.get(
                        table, "id" if "id" in described else OF_A_JOB)
@@ -105,9 +109,8 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
                         "OFFSET 0) AS original "
                         "CROSS JOIN (SELECT generate_series(%d, %d) AS copy, %d AS copies) AS series")
             names = ", ".join(described)
-            result, target = names, names
-            if table in sealed:
-                result, target = f"{names}, {seal(sealed[table])}", f"{names}, seal"
+            made = seals.get(table, {})
+            target, result = ", ".join([names, *made]), ", ".join([names, *made.values()])
             insert = f"INSERT INTO {table} ({target}) SELECT {result} FROM ({selected}) AS made"
             ranges = [(first, min(first + COPIES_AT_ONCE, copies) - 1) for first in range(1, copies, COPIES_AT_ONCE)]
             with ThreadPoolExecutor(AT_ONCE) as clients:

@@ -1797,7 +1797,8 @@ class Job(TypedDict):
     device_name: str | None
     # Of the recording that the request is about; null where that is none, several or one without a name.
     recording_name: str | None
-    # What was asked for, complete: equal requests are one job.
+    # What was asked for, complete: equal requests are one job. In lists without inputs and parameters where the row of
+    # the job is damaged, as `problem` then says.
     request: JobRequestMember
     # Where the result is, once the job has succeeded.
     result: JobResult | None
@@ -1942,7 +1943,8 @@ class JobRequestInvestigateParameters(TypedDict):
 
 
 class JobRequestMember(TypedDict):
-    """What was asked for, complete: equal requests are one job."""
+    """What was asked for, complete: equal requests are one job. In lists without inputs and parameters where the row of
+    the job is damaged, as `problem` then says."""
 
     kind: str
     inputs: JobRequestMemberInputs

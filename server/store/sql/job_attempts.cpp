@@ -61,8 +61,8 @@ constexpr std::string_view kHeld =
     "SELECT cancel_requested, failures, faults, max_failures, started_at FROM jobs "
     "WHERE id = ?1 AND attempt = ?2 AND state = 'running'";
 constexpr std::string_view kRememberFailure =
-    "INSERT INTO job_attempts (job_id, attempt, started_at, failed_at, fault_signal, problem_json) "
-    "VALUES (?, ?, ?, ?, ?, ?)";
+    "INSERT INTO job_attempts (job_id, attempt, started_at, failed_at, fault_signal, problem_json, seal) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kFailToEnd =
     "UPDATE jobs SET state = ?2, finished_at = ?3, lease_expires_at = NULL, failures = ?4, faults = ?5, "
     "problem_json = ?6 WHERE id = ?1";
@@ -237,10 +237,12 @@ Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease, con
   const HeldJob& job = *found;
   const int failures = std::min(job.failures + 1, job.max_failures);
   const int faults = std::min(job.faults + (failure.fault_signal ? 1 : 0), kMaxFaults);
-  Status change =
-      connection.prepare(kRememberFailure)
-          .bind(lease.job_id, lease.attempt, job.started_at, now, failure.fault_signal ? 1 : 0, failure.problem_json)
-          .run();
+  const int fault = failure.fault_signal ? 1 : 0;
+  const std::string seal = seal_of_texts({lease.job_id, std::to_string(lease.attempt), std::to_string(job.started_at),
+                                          std::to_string(now), std::to_string(fault), failure.problem_json});
+  Status change = connection.prepare(kRememberFailure)
+                      .bind(lease.job_id, lease.attempt, job.started_at, now, fault, failure.problem_json, seal)
+                      .run();
   const std::optional<JobState> end = end_after(failure, job, failures, faults);
   if (change) {
     change =

@@ -6,7 +6,7 @@
 /// Constant text: string literals next to each other are one.
 #define DRIFTLAB_JOB_COLUMNS                                                                                \
   "id, kind, state, stage, progress, priority, attempt, failures, max_failures, unique_key, request_json, " \
-  "cancel_requested, run_at, lease_expires_at, created_at, started_at, finished_at, problem_json, seal"
+  "cancel_requested, run_at, lease_expires_at, created_at, started_at, finished_at, problem_json, seal, end_seal"
 
 /// Whether a process can run a job; KNOWN is the parameter that holds what `can_run` writes. A canonical request begins
 /// with its version, for its members are sorted.
@@ -18,7 +18,7 @@
 
 namespace driftlab::server::tables {
 
-/// `is_damaged` tells whether the request is not what was written: who works with it has to look.
+/// `is_damaged` tells whether a seal does not fit or the state is none: who works with it has to look.
 [[nodiscard]] Job read_job(const Statement& row);
 
 /// `["pool 0","pool 1"]`: each kind with every version up to the one that the process has; names are plain words.

@@ -21,9 +21,11 @@ constexpr std::string_view kForgetEnded =
   "coalesce((SELECT CASE WHEN count(*) = 1 THEN min(recordings.name) END FROM job_recordings JOIN recordings ON " \
   "recordings.id = job_recordings.recording_id WHERE job_recordings.job_id = jobs.id), '') FROM jobs"
 constexpr std::string_view kSelect = DRIFTLAB_NAMED_JOBS;
-constexpr std::string_view kById = DRIFTLAB_NAMED_JOBS " WHERE id = ?";
+constexpr std::string_view kNamedById = DRIFTLAB_NAMED_JOBS " WHERE id = ?";
 constexpr std::string_view kEqualJob =
     DRIFTLAB_NAMED_JOBS " WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
+/// One that is damaged is made anew.
+constexpr std::string_view kGiveUpKey = "UPDATE jobs SET unique_key = unique_key || ' ' || id WHERE id = ?";
 constexpr std::string_view kInsert =
     "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, seal) "
     "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7, ?8)";
@@ -47,13 +49,18 @@ constexpr std::string_view kNoteRecordings =
 constexpr std::string_view kScenario =
     "coalesce(json_extract(request_json, '$.inputs.scenario.name'), json_extract(request_json, '$.inputs.scenario'), "
     "'') || ' ' || id";
-constexpr std::string_view kAttempts = "SELECT problem_json FROM job_attempts WHERE job_id = ? ORDER BY attempt";
+constexpr std::string_view kAttempts =
+    "SELECT job_id, attempt, started_at, failed_at, fault_signal, problem_json, seal FROM job_attempts WHERE job_id = "
+    "? "
+    "ORDER BY attempt";
 constexpr std::string_view kEvents =
     "SELECT sequence, type, state, stage, progress, attempt, at FROM job_events WHERE job_id = ? AND sequence > ? "
     "ORDER BY sequence LIMIT ?";
 constexpr std::string_view kAddEvent =
     "INSERT INTO job_events (job_id, type, state, stage, progress, attempt, at) "
-    "SELECT id, ?2, state, stage, progress, attempt, ?3 FROM jobs WHERE id = ?1";
+    "SELECT id, ?2, state, stage, progress, attempt, ?3 FROM jobs WHERE id = ?1 RETURNING state";
+constexpr std::string_view kById = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE id = ?";
+constexpr std::string_view kSealEnd = "UPDATE jobs SET problem_json = ?2, end_seal = ?3 WHERE id = ?1";
 
 /// Every text in a document that has the letters of an id, as a JSON list.
 std::string possible_ids(const std::string& request_json) {
@@ -76,13 +83,25 @@ std::string possible_ids(const std::string& request_json) {
   return ids.dump();
 }
 
-std::string read_text(const Statement& row) { return row.text(0); }
+/// The problem of a failed attempt, if its seal fits. Error: damaged_row.
+Result<std::string> read_problem(const Statement& row) {
+  const std::vector<std::string> texts{row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)};
+  if (!seal_fits(row.text(6), seal_of_texts({texts.begin(), texts.end()}))) {
+    return fail(damaged_in("job_attempts", texts[0] + "/" + texts[1]));
+  }
+  return texts[5];
+}
 
-JobEvent read_event(const Statement& row) {
+/// A state that is none is told as a damaged row.
+Result<JobEvent> read_event(const Statement& row) {
+  const auto state = parse_job_state(row.text(2));
+  if (!state) {
+    return fail(damaged_row("job_events", "event", row.text(0)));
+  }
   JobEvent event;
   event.sequence = row.integer(0);
   event.type = row.text(1);
-  event.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  event.state = *state;
   event.stage = row.text(3);
   event.progress = row.real(4);
   event.attempt = row.integer(5);
@@ -107,7 +126,8 @@ Job read_job(const Statement& row) {
   Job job;
   job.id = row.text(0);
   job.kind = row.text(1);
-  job.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  const auto state = parse_job_state(row.text(2));
+  job.state = state.value_or(JobState::Queued);
   job.stage = row.text(3);
   job.progress = row.real(4);
   job.priority = static_cast<int>(row.integer(5));
@@ -123,7 +143,7 @@ Job read_job(const Statement& row) {
   job.started_at = row.optional_integer(15);
   job.finished_at = row.optional_integer(16);
   job.problem_json = row.text(17);
-  job.is_damaged = !seal_fits(row.text(18), seal_of(job));
+  job.is_damaged = !state || !seal_fits(row.text(18), seal_of(job)) || !seal_fits(row.text(19), end_seal_of(job));
   return job;
 }
 
@@ -131,9 +151,65 @@ namespace {
 
 Job read_named_job(const Statement& row) {
   Job job = read_job(row);
-  job.device_name = row.text(19);
-  job.recording_name = row.text(20);
+  job.device_name = row.text(20);
+  job.recording_name = row.text(21);
   return job;
+}
+
+Error no_job(std::string_view id) {
+  return {ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}}};
+}
+
+/// Of every failed attempt, oldest first. Error: damaged_row.
+Result<std::vector<std::string>> attempt_problems(Connection& connection, std::string_view id) {
+  Statement attempts = connection.prepare(kAttempts);
+  attempts.bind(id);
+  return all_rows(attempts, read_problem);
+}
+
+/// Until a job has ended, its row has no seal of its problem: that is the one of the attempt that failed last.
+void take_problem(Job& job, const std::vector<std::string>& attempts) {
+  if (!is_terminal(job.state)) {
+    job.problem_json = attempts.empty() ? std::string() : attempts.back();
+  }
+}
+
+/// The same where the attempts have not been read. A damaged attempt is told as a damaged job.
+Status look_up_problem(Connection& connection, Job& job) {
+  if (is_terminal(job.state) || (job.failures == 0 && job.problem_json.empty())) {
+    return {};
+  }
+  const Result<std::vector<std::string>> problems = attempt_problems(connection, job.id);
+  if (!problems && damaged_row_of(problems.error()).empty()) {
+    return fail(problems.error());
+  }
+  job.is_damaged = job.is_damaged || !problems;
+  take_problem(job, problems.value_or(std::vector<std::string>()));
+  return {};
+}
+
+/// Seals what a job says that has just ended; its problem, which was not sealed before, as the last attempt has it.
+Status seal_end(Connection& connection, std::string_view id) {
+  Job ended;
+  {
+    Statement statement = connection.prepare(kById);
+    statement.bind(id);
+    Result<Job> found = one_row(statement, read_job, no_job(id));
+    if (!found) {
+      return fail(found.error());
+    }
+    ended = std::move(*found);
+  }
+  if (ended.state != JobState::Succeeded && ended.failures > 0) {
+    auto problems = attempt_problems(connection, id);
+    if (!problems && damaged_row_of(problems.error()).empty()) {
+      return fail(problems.error());
+    }
+    if (problems && !problems->empty()) {
+      ended.problem_json = std::move(problems->back());
+    }
+  }
+  return connection.prepare(kSealEnd).bind(id, ended.problem_json, end_seal_of(ended)).run();
 }
 
 }  // namespace
@@ -152,7 +228,14 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
     return fail(existing.error());
   }
   if (!existing->empty()) {
-    return EnqueuedJob{std::move(existing->front()), false};
+    Job& equal_job = existing->front();
+    if (!equal_job.is_damaged || !is_terminal(equal_job.state)) {
+      const Status taken = look_up_problem(connection, equal_job);
+      return taken ? Result<EnqueuedJob>(EnqueuedJob{std::move(equal_job), false}) : fail(taken.error());
+    }
+    if (Status done = connection.prepare(kGiveUpKey).bind(equal_job.id).run(); !done) {
+      return fail(done.error());
+    }
   }
   Job made;
   made.id = make_id("job", now);
@@ -179,27 +262,23 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
 }
 
 Result<Job> job(Connection& connection, std::string_view id) {
-  Statement statement = connection.prepare(kById);
+  Statement statement = connection.prepare(kNamedById);
   statement.bind(id);
-  Result<Job> found =
-      one_row(statement, read_named_job,
-              {ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}}});
-  if (!found) {
-    return found;
-  }
-  Statement attempts = connection.prepare(kAttempts);
-  attempts.bind(id);
-  Result<std::vector<std::string>> problems = all_rows(attempts, read_text);
-  if (!problems) {
-    return fail(problems.error());
-  }
-  found->attempt_problems_json = std::move(*problems);
-  return found;
+  return one_row(statement, read_named_job, no_job(id));
 }
 
 Result<Job> sound_job(Connection& connection, std::string_view id) {
   Result<Job> found = job(connection, id);
-  return found && found->is_damaged ? fail(damaged_in("jobs", found->id)) : found;
+  if (!found || found->is_damaged) {
+    return found ? fail(damaged_in("jobs", found->id)) : found;
+  }
+  Result<std::vector<std::string>> problems = attempt_problems(connection, id);
+  if (!problems) {
+    return fail(problems.error());
+  }
+  take_problem(*found, *problems);
+  found->attempt_problems_json = std::move(*problems);
+  return found;
 }
 
 Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {
@@ -215,7 +294,16 @@ Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, c
               filter.device_id);
   query.holds(kScenario, filter.scenario);
   query.made_since("job", filter.since);
-  return query.visible_jobs(page).read_page(connection, page, read_named_job);
+  Result<std::vector<Job>> found = query.visible_jobs(page).read_page(connection, page, read_named_job);
+  if (!found) {
+    return found;
+  }
+  for (Job& listed : *found) {
+    if (Status taken = look_up_problem(connection, listed); !taken) {
+      return fail(taken.error());
+    }
+  }
+  return found;
 }
 
 Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id, std::int64_t sequence,
@@ -226,10 +314,21 @@ Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_v
 }
 
 Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now) {
-  if (Status added = connection.prepare(kAddEvent).bind(job_id, type, now).run(); !added || type != "state") {
-    return added;
+  std::optional<JobState> state;
+  {
+    Statement statement = connection.prepare(kAddEvent);
+    statement.bind(job_id, type, now);
+    const Result<bool> added = statement.step();
+    if (!added) {
+      return fail(added.error());
+    }
+    state = *added ? parse_job_state(statement.text(0)) : std::nullopt;
   }
-  return fill_outbox(connection, job_id, now);
+  if (type != "state" || !state || !is_terminal(*state)) {
+    return {};
+  }
+  const Status sealed = seal_end(connection, job_id);
+  return sealed ? fill_outbox(connection, job_id, now) : sealed;
 }
 
 Result<int> forget_ended_jobs(Connection& connection, UtcMicros before) {

@@ -175,6 +175,9 @@ Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis)
       return fail(job.error());
     }
     results.pool = std::move(*job);
+    if (results.pool && results.pool->is_damaged) {
+      return fail(damaged_in("jobs", results.pool->id));
+    }
   }
   if (results.pool && results.pool->state == JobState::Succeeded) {
     auto document = result_document(connection, results.pool->id);

@@ -20,6 +20,7 @@ class Seal {
   void add(const std::string& text) { add(std::string_view(text)); }
   void add(std::int64_t number) { add(std::to_string(number)); }
   void add(int number) { add(std::int64_t{number}); }
+  void add(const std::optional<std::int64_t>& number) { add(number ? std::to_string(*number) : std::string()); }
   [[nodiscard]] std::string finish() { return digest_.finish(); }
 
  private:
@@ -54,6 +55,25 @@ std::vector<std::string> texts_of(const Statement& row, std::size_t first, std::
   return texts;
 }
 
+/// Whether the row of that key has a seal that does not fit; one that is gone has none.
+Result<bool> has_wrong_seal(Connection& connection, const SealedTable& table, const std::vector<std::string>& key) {
+  std::string text = "SELECT " + std::string(table.seal) + ", " + std::string(table.columns) + " FROM " +
+                     std::string(table.name) + " WHERE ";
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    text.append(i > 0 ? " AND " : "").append(table.key[i]).append(" = ?");
+  }
+  Statement statement = connection.prepare(text);
+  for (const std::string& part : key) {
+    statement.bind(part);
+  }
+  const Result<bool> found = statement.step();
+  if (!found || !*found) {
+    return found;
+  }
+  const std::vector<std::string> values = texts_of(statement, 1, count_of(table.columns));
+  return !seal_fits(statement.text(0), seal_of_texts({values.begin(), values.end()}));
+}
+
 }  // namespace
 
 // The columns of a table, and below the members of its row: in the same order.
@@ -67,6 +87,17 @@ const std::vector<SealedTable>& sealed_tables() {
        "id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, tags_json, tags_revision, "
        "file_name, name"},
       {"jobs", "job", {"id"}, "id, kind, request_json"},
+      {"jobs",
+       "job",
+       {"id"},
+       "id, state, stage, priority, attempt, failures, cancel_requested, created_at, started_at, finished_at, "
+       "problem_json",
+       "end_seal",
+       "finished_at IS NOT NULL"},
+      {"job_attempts",
+       "failed attempt",
+       {"job_id", "CAST(attempt AS TEXT)"},
+       "job_id, attempt, started_at, failed_at, fault_signal, problem_json"},
       {"job_results", "result", {"job_id"}, "job_id, document_json"},
       {"channel_results",
        "result of a channel",
@@ -110,6 +141,11 @@ std::string seal_of(const Recording& r) {
 }
 
 std::string seal_of(const Job& j) { return sealed(j.id, j.kind, j.request_json); }
+
+std::string end_seal_of(const Job& j) {
+  return sealed(j.id, name_of(j.state), j.stage, j.priority, j.attempt, j.failures, j.cancel_requested ? 1 : 0,
+                j.created_at, j.started_at, j.finished_at, j.problem_json);
+}
 
 std::string seal_of(const ChannelResult& c) {
   return sealed(c.id, c.job_id, c.device_id, c.recording_id, c.recording_revision, c.channel, c.quantity, c.axis,
@@ -175,7 +211,8 @@ Result<ReadBack> read_back(Connection& connection, const SealedTable& table, con
                            int limit) {
   const std::size_t keys = table.key.size();
   const std::string key = joined(table.key, ", ");
-  std::string text = "SELECT " + key + ", seal, " + std::string(table.columns) + " FROM " + std::string(table.name);
+  std::string text = "SELECT " + key + ", " + std::string(table.seal) + ", " + std::string(table.columns) + " FROM " +
+                     std::string(table.name);
   if (!after.empty()) {
     text += " WHERE (" + key + ") > (" + joined(std::vector<std::string_view>(keys, "?"), ", ") + ")";
   }
@@ -213,33 +250,29 @@ Result<std::optional<bool>> is_damaged(Connection& connection, std::string_view 
   }
   const std::string name = key.front();
   key.erase(key.begin());
-  const auto table = std::ranges::find(sealed_tables(), name, &SealedTable::name);
-  if (table == sealed_tables().end() || table->key.size() != key.size()) {
-    return std::nullopt;
+  std::optional<bool> damaged;
+  for (const SealedTable& table : sealed_tables()) {
+    if (table.name != name || table.key.size() != key.size()) {
+      continue;
+    }
+    const Result<bool> one = has_wrong_seal(connection, table, key);
+    if (!one) {
+      return fail(one.error());
+    }
+    damaged = damaged.value_or(false) || *one;
   }
-  std::string text = "SELECT seal, " + std::string(table->columns) + " FROM " + name + " WHERE ";
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    text.append(i > 0 ? " AND " : "").append(table->key[i]).append(" = ?");
-  }
-  Statement statement = connection.prepare(text);
-  for (const std::string& part : key) {
-    statement.bind(part);
-  }
-  const Result<bool> found = statement.step();
-  if (!found || !*found) {
-    return found ? Result<std::optional<bool>>(false) : fail(found.error());
-  }
-  const std::vector<std::string> values = texts_of(statement, 1, count_of(table->columns));
-  return !seal_fits(statement.text(0), seal_of_texts({values.begin(), values.end()}));
+  return damaged;
 }
 
 Result<int> seal_rows(Connection& connection, const SealedTable& table, int limit) {
   const std::size_t keys = table.key.size();
   const std::string name(table.name);
+  const std::string unsealed = std::string(table.seal) + " = ''";
   std::vector<std::vector<std::string>> sealed_rows;  // the seal, then the key
   {
-    Statement statement = connection.prepare("SELECT " + joined(table.key, ", ") + ", " + std::string(table.columns) +
-                                             " FROM " + name + " WHERE seal = '' LIMIT ?");
+    Statement statement =
+        connection.prepare("SELECT " + joined(table.key, ", ") + ", " + std::string(table.columns) + " FROM " + name +
+                           " WHERE " + unsealed + " AND " + std::string(table.when) + " LIMIT ?");
     statement.bind(limit);
     while (true) {
       const Result<bool> row = statement.step();
@@ -255,7 +288,7 @@ Result<int> seal_rows(Connection& connection, const SealedTable& table, int limi
       sealed_rows.push_back(std::move(made));
     }
   }
-  std::string update = "UPDATE " + name + " SET seal = ? WHERE seal = ''";
+  std::string update = "UPDATE " + name + " SET " + std::string(table.seal) + " = ? WHERE " + unsealed;
   for (const std::string_view part : table.key) {
     update.append(" AND ").append(part).append(" = ?");
   }

@@ -4,8 +4,9 @@
 /// A row of a sealed table has the SHA-256 of its sealed columns in its column `seal`, written by the statement that
 /// writes them and compared whenever the row is read, in the background (server/scrubber.hpp) and by `driftlabd check`.
 /// Sealed is what results are made of and answers say, what lets somebody in, and whom the daemon tells. Times, states
-/// and counters are not: they change by statements of their own, and no result depends on them. An empty seal is that
-/// of a row of an earlier release; a daemon fills it in when it starts.
+/// and counters are not: they change by statements of their own, and no result depends on them. Those of a job change
+/// no more once it has ended: they and its problem then have a seal of their own, `end_seal`. An empty seal is that of
+/// a row of an earlier release; a daemon fills it in when it starts.
 #include "core/signal/result.hpp"
 #include "server/store/damaged_row.hpp"
 #include "server/store/rows.hpp"
@@ -23,13 +24,15 @@ namespace driftlab::server {
 struct SealedTable {
   std::string_view name;
   std::string_view noun;              ///< what an error calls one of its rows
-  std::vector<std::string_view> key;  ///< its columns; rows are read back in their order
+  std::vector<std::string_view> key;  ///< its columns, as texts; rows are read back in their order
   std::string_view columns;           ///< sealed, in the order of the seal
+  std::string_view seal = "seal";     ///< the column that has it
+  std::string_view when = "true";     ///< which rows have one
 };
 
-/// Every sealed table.
+/// Every sealed table; one whose rows have two seals is there twice.
 [[nodiscard]] const std::vector<SealedTable>& sealed_tables();
-/// That of this name, which must be one of them.
+/// The first of this name, which must be one of them.
 [[nodiscard]] const SealedTable& sealed_table(std::string_view name);
 
 // ---- the seal of a row as the store holds it
@@ -37,6 +40,8 @@ struct SealedTable {
 [[nodiscard]] std::string seal_of(const Blob& blob);
 [[nodiscard]] std::string seal_of(const Recording& recording);
 [[nodiscard]] std::string seal_of(const Job& job);
+/// Of what a job says that has ended.
+[[nodiscard]] std::string end_seal_of(const Job& job);
 [[nodiscard]] std::string seal_of(const ChannelResult& channel);
 [[nodiscard]] std::string seal_of(const Fit& fit);
 [[nodiscard]] std::string seal_of(const Study& study);
@@ -47,7 +52,7 @@ struct SealedTable {
 [[nodiscard]] std::string seal_of(const ResultVerdict& verdict);
 [[nodiscard]] std::string seal_of(const Anchor& anchor);
 [[nodiscard]] std::string seal_of(const IdempotentReply& reply);
-/// Of the sealed columns as texts, which is how job_results, artefacts, tokens and webhooks are sealed.
+/// Of the sealed columns as texts, which is how job_attempts, job_results, artefacts, tokens and webhooks are sealed.
 [[nodiscard]] std::string seal_of_texts(const std::vector<std::string_view>& texts);
 
 /// Whether a seal fits. One that was never made fits everything.

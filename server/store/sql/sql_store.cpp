@@ -205,6 +205,9 @@ Result<EnqueuedJob> SqlStore::enqueue(const NewJob& job) {
   return audited_.write(
       [&](Connection& c) -> Result<EnqueuedJob> {
         auto queued = tables::enqueue(c, job, now(c));
+        if (queued && queued->job.is_damaged) {
+          return fail(damaged_in("jobs", queued->job.id));
+        }
         if (queued) {
           if (Status noted = note_caller(c, queued->job, caller); !noted) {
             return fail(noted.error());
@@ -220,7 +223,15 @@ Result<Job> SqlStore::job(std::string_view id) {
 }
 
 Result<std::vector<Job>> SqlStore::jobs(const JobFilter& filter, const Page& page) {
-  return database_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
+  auto found = database_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
+  if (found) {
+    for (const Job& listed : *found) {
+      if (listed.is_damaged) {
+        database_->tell_damage(damaged_in("jobs", listed.id));
+      }
+    }
+  }
+  return found;
 }
 
 Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros, std::int64_t running_per_token,
@@ -266,8 +277,9 @@ Result<LeaseStatus> SqlStore::release(const Lease& lease) {
 }
 
 Result<Job> SqlStore::request_cancel(std::string_view id) {
-  return audited_.write([&](Connection& c) { return tables::request_cancel(c, id, now(c)); },
-                        [](const Job& job) { return changed("job.cancel", job.id); });
+  const auto asked = audited_.write([&](Connection& c) { return tables::request_cancel(c, id, now(c)); },
+                                    [](const Job& job) { return changed("job.cancel", job.id); });
+  return asked ? job(asked->id) : asked;  // one that is damaged is cancelled as well, and not shown
 }
 
 Result<int> SqlStore::rescue_expired() {

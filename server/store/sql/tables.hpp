@@ -227,8 +227,9 @@ class FilteredQuery {
 
 // ---- jobs: asking and looking
 [[nodiscard]] Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now);
+/// Without its attempts, whether it is damaged or not.
 [[nodiscard]] Result<Job> job(Connection& connection, std::string_view id);
-/// The same, if its request is what was written. Error: damaged_row.
+/// With them, if it and they are what was written. Error: damaged_row.
 [[nodiscard]] Result<Job> sound_job(Connection& connection, std::string_view id);
 [[nodiscard]] Result<int> forget_ended_jobs(Connection& connection, UtcMicros before);
 [[nodiscard]] Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page);

@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDatabase = "driftlab.db";
 constexpr const char* kManifest = "manifest.json";
-constexpr std::int64_t kFirstSealedSchema = 16;
 
 Result<std::unique_ptr<SqliteConnection>> open_to_read(const fs::path& directory) {
   std::error_code none;
@@ -67,14 +66,23 @@ Status check_database(SqliteConnection& connection, std::vector<std::string>& fa
   return {};
 }
 
-/// Compares every row with its seal; a database of an earlier release has none.
+/// Whether the table has that seal: in a database of an earlier release not every one has.
+Result<bool> has_seals(SqliteConnection& connection, const SealedTable& table) {
+  Statement statement = connection.prepare("SELECT 1 FROM pragma_table_info(?) WHERE name = ?");
+  return statement.bind(table.name, table.seal).step();
+}
+
+/// Compares every row with its seal.
 Status check_rows(SqliteConnection& connection, const std::stop_token& stop, StoreReport& report) {
   constexpr int kRowsAtOnce = 100;
-  const auto schema = connection.query_integer("PRAGMA user_version");
-  if (!schema || schema->value_or(0) < kFirstSealedSchema) {
-    return schema ? Status{} : fail(schema.error());
-  }
   for (const SealedTable& table : sealed_tables()) {
+    const Result<bool> sealed = has_seals(connection, table);
+    if (!sealed) {
+      return fail(sealed.error());
+    }
+    if (!*sealed) {
+      continue;
+    }
     std::vector<std::string> after;
     do {
       if (stop.stop_requested()) {
