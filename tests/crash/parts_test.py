@@ -5,6 +5,7 @@ work on parts, the job's own one among them.
 """
 from __future__ import annotations
 
+import functools
 import random
 import re
 import tempfile
@@ -20,7 +21,7 @@ import samples
 from daemon import PATIENCE_S, Daemon
 
 ROWS = 240_000  # of a recording of three axes: three of them are worth sharing
-RUNS = 100
+RUNS = 80  # four batches
 SEED = 20261129
 ALONE = ("--workers", "1", "--threads", "1", "--budget", "reserve_bytes=0")
 
@@ -53,6 +54,7 @@ def told(daemon: Daemon, job: str) -> str:
     return re.sub(r"\b(rec|chr|fit|dev|job)_[0-9A-Z]{26}", r"\1", answer.text)
 
 
+@functools.cache
 def alone(ask: Callable[[Daemon], str]) -> str:
     with tempfile.TemporaryDirectory() as folder, Daemon(Path(folder), arguments=ALONE) as daemon:
         job = ask(daemon)
