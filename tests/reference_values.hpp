@@ -7,6 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace driftlab {
 
@@ -22,6 +24,18 @@ inline nlohmann::json reference_values(const std::string& name) {
     throw std::runtime_error("no reference values in " + path.string() + "; run from the repository, or by ctest");
   }
   return nlohmann::json::parse(file);
+}
+
+/// The models that the peer's fits are of: as their values name them, and as driftlab does.
+inline const std::vector<std::pair<std::string, std::string>>& reference_models() {
+  static const std::vector<std::pair<std::string, std::string>> names{{"WN", "WN"},
+                                                                      {"WN+AR1", "WN+GM"},
+                                                                      {"WN+RW", "WN+RW"},
+                                                                      {"WN+2AR1", "WN+2GM"},
+                                                                      {"WN+AR1+RW", "WN+GM+RW"},
+                                                                      {"QN+WN+AR1+RW", "QN+WN+GM+RW"},
+                                                                      {"WN+AR1+DR", "WN+GM+DR"}};
+  return names;
 }
 
 }  // namespace driftlab

@@ -13,7 +13,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace driftlab::accuracy {
@@ -21,18 +20,6 @@ namespace {
 
 constexpr double kDt = 0.01;
 constexpr double kMostBelow = 10.0;  ///< nats, where the J test accepts
-
-/// As the reference values name them, and as driftlab does.
-const std::vector<std::pair<std::string, std::string>>& models() {
-  static const std::vector<std::pair<std::string, std::string>> list{{"WN", "WN"},
-                                                                     {"WN+AR1", "WN+GM"},
-                                                                     {"WN+RW", "WN+RW"},
-                                                                     {"WN+2AR1", "WN+2GM"},
-                                                                     {"WN+AR1+RW", "WN+GM+RW"},
-                                                                     {"QN+WN+AR1+RW", "QN+WN+GM+RW"},
-                                                                     {"WN+AR1+DR", "WN+GM+DR"}};
-  return list;
-}
 
 nlohmann::json list_of(const nlohmann::json& one) { return one.is_array() ? one : nlohmann::json::array({one}); }
 
@@ -112,7 +99,7 @@ TEST(Peers, TheLikelihoodOfTheSameModelsOnTheSameRecordings) {
       "fit that forgives the first scales, which hold most of the likelihood, may lose there what it wins at the long "
       "ones.\n\n");
   section.print("| axis ");
-  for (const auto& [theirs, ours] : models()) {
+  for (const auto& [theirs, ours] : reference_models()) {
     section.print("| %s ", ours.c_str());
   }
   section.print("|\n|---|---|---|---|---|---|---|---|\n");
@@ -128,13 +115,13 @@ TEST(Peers, TheLikelihoodOfTheSameModelsOnTheSameRecordings) {
       const nlohmann::json& peer = file["axes"][name]["gmwm"];
       CharacteriseOptions options;
       options.models.clear();
-      for (const auto& [theirs, ours] : models()) {
+      for (const auto& [theirs, ours] : reference_models()) {
         options.models.push_back(ours);
       }
       const auto found = characterise_channel({.values = columns[a], .dt_s = kDt}, options);
       ASSERT_TRUE(found) << found.error().message;
       section.print("| %s %s ", recording, name.c_str());
-      for (const auto& [theirs, ours] : models()) {
+      for (const auto& [theirs, ours] : reference_models()) {
         const auto fit = std::find_if(found->fits.begin(), found->fits.end(),
                                       [&](const ModelFit& one) { return one.model == ours; });
         if (fit == found->fits.end() || !peer.contains(theirs) || peer[theirs]["estimate"].is_null()) {
