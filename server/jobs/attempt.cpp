@@ -80,14 +80,8 @@ Result<JobResults> Attempt::work() {
       return driftlab::fail(sound.error());
     }
   }
-  RunControl control;
-  control.stop = stop_.get_token();
+  RunControl control = charged_to(lease_, executor_, stop_.get_token());
   control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };
-  control.threads.executor = &executor_;
-  control.threads.around = [this](const std::function<void()>& helping) {
-    const FaultScope scope(lease_);
-    helping();
-  };
   const auto request = parse_json(job_.request_json);
   if (!request) {
     return driftlab::fail(request.error());

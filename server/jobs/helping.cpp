@@ -32,13 +32,7 @@ void Helping::run() {
       return;
     }
     const Executor::Seat seat(executor_);
-    RunControl control;
-    control.stop = stop_.get_token();
-    control.threads.executor = &executor_;
-    control.threads.around = [this](const std::function<void()>& helping) {
-      const FaultScope helper_scope(lease_);
-      helping();
-    };
+    const RunControl control = charged_to(lease_, executor_, stop_.get_token());
     // A part that ends in an exception is left until its lease runs out: the job's own worker takes it then.
     (void)kind_.run_in_parts(*request, context_, control, parts_);
   }

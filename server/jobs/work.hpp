@@ -1,5 +1,9 @@
 #pragma once
 /// What a worker is at: an attempt at a job of its own, or help with one of others.
+#include "core/signal/progress.hpp"
+#include "server/store/store.hpp"
+
+#include <stop_token>
 
 namespace driftlab::server {
 
@@ -21,5 +25,9 @@ class Work {
   /// The time to end is over: what it holds goes back now, and what it still finds is discarded.
   virtual void hand_back() = 0;
 };
+
+/// The control of work that counts against that attempt, also where another thread of the executor helps with it. It
+/// reports no progress. References must outlive it.
+[[nodiscard]] RunControl charged_to(const Lease& lease, Executor& executor, std::stop_token stop);
 
 }  // namespace driftlab::server
