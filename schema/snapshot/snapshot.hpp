@@ -9,9 +9,10 @@
 
 #include <boost/pfr.hpp>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,9 +28,8 @@ class SnapshotWriter {
   template <class T>
   void put(const T& value) {
     if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-      std::array<char, sizeof(T)> raw;
-      std::memcpy(raw.data(), &value, sizeof(T));
-      bytes_.append(raw.data(), raw.size());
+      const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+      bytes_.append(raw.begin(), raw.end());
     } else {
       boost::pfr::for_each_field(value, [this](const auto& member) { put(member); });
     }
@@ -76,8 +76,13 @@ class SnapshotReader {
   template <class T>
   void get(T& value) {
     if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-      if (const std::string_view raw = take(sizeof(T)); !raw.empty()) {
-        std::memcpy(&value, raw.data(), sizeof(T));
+      const std::string_view taken = take(sizeof(T));
+      std::array<char, sizeof(T)> raw{};
+      std::copy(taken.begin(), taken.end(), raw.begin());
+      if constexpr (std::is_same_v<T, bool>) {
+        value = raw[0] != 0;
+      } else if (!taken.empty()) {
+        value = std::bit_cast<T>(raw);
       }
     } else {
       boost::pfr::for_each_field(value, [this](auto& member) { get(member); });

@@ -24,9 +24,9 @@ void Helping::run() {
   if (!request || job_.is_damaged) {
     return;  // the job's own worker sees that too, and says so
   }
-  std::stop_source at_once;
-  at_once.request_stop();
   {
+    const std::stop_source at_once;
+    (void)at_once.request_stop();
     const MemoryGate::Share memory(memory_, kind_.cost(*request, context_).memory_bytes, at_once.get_token(), {});
     if (!memory.held()) {
       return;

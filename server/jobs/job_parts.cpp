@@ -89,22 +89,25 @@ SharedParts::SharedParts(PartStore& store, Lease lease, std::int64_t lease_micro
 
 Result<bool> SharedParts::work(std::size_t count, const Part& part, const RunControl& control) {
   const auto claimed = store_.claim_part(lease_.job_id, true, lease_micros_);
-  if (!claimed || !*claimed) {
-    return claimed ? Result<bool>(false) : fail(claimed.error());
+  if (!claimed) {
+    return fail(claimed.error());
   }
-  const PartClaim& claim = **claimed;
-  held_.hold(claim);
+  const std::optional<PartClaim>& claim = *claimed;
+  if (!claim) {
+    return false;
+  }
+  held_.hold(*claim);
   const auto finished = store_.count_finished_parts(lease_.job_id);
   const auto done = static_cast<double>(finished.value_or(0));
   const RunControl own = control.reporting([&](std::string_view stage, double fraction) {
     control.report(stage, (done + fraction) / static_cast<double>(count));
   });
-  const Result<std::string> text = text_of(part(static_cast<std::size_t>(claim.number), own));
+  const Result<std::string> text = text_of(part(static_cast<std::size_t>(claim->number), own));
   if (!text) {
     held_.put_back();
     return fail(text.error());
   }
-  const auto written = store_.finish_part(claim, *text);
+  const auto written = store_.finish_part(*claim, *text);
   held_.let_go();
   return written ? Result<bool>(true) : fail(written.error());
 }
@@ -159,19 +162,18 @@ HelpedParts::HelpedParts(PartStore& store, std::string job_id, std::int64_t leas
 
 Status HelpedParts::share(std::size_t count, const Part& part, const Take& /*take*/, const RunControl& control) {
   while (!control.stop.stop_requested() && std::chrono::steady_clock::now() < until_) {
-    const auto claimed = store_.claim_part(job_id_, false, lease_micros_);
-    if (!claimed || !*claimed) {
+    const auto claim = store_.claim_part(job_id_, false, lease_micros_).value_or(std::nullopt);
+    if (!claim) {
       break;
     }
-    const PartClaim& claim = **claimed;
-    held_.hold(claim);
-    const auto number = static_cast<std::size_t>(claim.number);
+    held_.hold(*claim);
+    const auto number = static_cast<std::size_t>(claim->number);
     const Result<std::string> text = number < count ? text_of(part(number, control)) : Result<std::string>("");
     if (!text) {
       held_.put_back();
       break;
     }
-    const auto written = store_.finish_part(claim, *text);
+    const auto written = store_.finish_part(*claim, *text);
     held_.let_go();
     finished_ += written && written->held && !text->empty() ? 1 : 0;
     if (!written || !written->held || written->cancel_requested) {

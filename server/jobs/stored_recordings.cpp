@@ -63,7 +63,8 @@ Result<std::size_t> StoredRecordings::expected_channels(std::size_t index) {
   if (!blob) {
     return fail(blob.error());
   }
-  const auto names = *blob ? parse_json((*blob)->columns_json) : Result<Json>(Json::array());
+  const std::optional<Blob>& stored = *blob;
+  const auto names = stored ? parse_json(stored->columns_json) : Result<Json>(Json::array());
   if (!names) {
     return fail(names.error());
   }

@@ -112,7 +112,10 @@ bool WorkerPool::Implementation::run_next() {
 
 bool WorkerPool::Implementation::help() {
   std::optional<Job> job = context.store.parts().job_to_help(options.known, DRIFTLAB_VERSION).value_or(std::nullopt);
-  const JobKind* const kind = job ? kinds(job->kind) : nullptr;
+  if (!job) {
+    return false;
+  }
+  const JobKind* const kind = kinds(job->kind);
   if (kind == nullptr) {
     return false;
   }

@@ -66,7 +66,7 @@ Result<bool> has_wrong_seal(Connection& connection, const SealedTable& table, co
   for (const std::string& part : key) {
     statement.bind(part);
   }
-  const Result<bool> found = statement.step();
+  Result<bool> found = statement.step();
   if (!found || !*found) {
     return found;
   }
