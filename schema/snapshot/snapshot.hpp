@@ -31,7 +31,7 @@ class SnapshotWriter {
       const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
       bytes_.append(raw.begin(), raw.end());
     } else {
-      boost::pfr::for_each_field(value, [this](const auto& member) { put(member); });
+      boost::pfr::for_each_field(value, [this](const auto& member) { this->put(member); });
     }
   }
   void put(const std::string& text) {
@@ -85,7 +85,7 @@ class SnapshotReader {
         value = std::bit_cast<T>(raw);
       }
     } else {
-      boost::pfr::for_each_field(value, [this](auto& member) { get(member); });
+      boost::pfr::for_each_field(value, [this](auto& member) { this->get(member); });
     }
   }
   void get(std::string& text) { text = std::string(take(length())); }
@@ -145,7 +145,7 @@ class SnapshotShape {
       text_.append(std::is_floating_point_v<T> ? "f" : "i").append(std::to_string(sizeof(T)));
     } else {
       text_.append("{");
-      boost::pfr::for_each_field(value, [this](const auto& member) { add(member); });
+      boost::pfr::for_each_field(value, [this](const auto& member) { this->add(member); });
       text_.append("}");
     }
   }

@@ -39,13 +39,12 @@ TEST(PostgresSearch, FindsPartsOfNamesByAnIndex) {
   ASSERT_TRUE(asked);
   for (const std::string index : {"devices_sought_within", "recordings_sought_within"}) {
     // Counted a moment after the connections of the store have ended.
+    std::string count = "SELECT idx_scan::TEXT, pg_sleep(0.05) FROM pg_stat_user_indexes WHERE schemaname = '";
+    count.append(schema).append("' AND indexrelname = '").append(index).append("'");
     std::optional<std::string> scans;
     for (int look = 0; look < 200 && scans.value_or("0") == "0"; ++look) {
       ASSERT_TRUE((*asked)->begin("BEGIN"));
-      scans = (*asked)
-                  ->query_text("SELECT idx_scan::TEXT, pg_sleep(0.05) FROM pg_stat_user_indexes WHERE schemaname = '" +
-                               schema + "' AND indexrelname = '" + index + "'")
-                  .value_or(std::nullopt);
+      scans = (*asked)->query_text(count).value_or(std::nullopt);
       (*asked)->roll_back();
     }
     EXPECT_GE(std::stoi(scans.value_or("0")), 1) << index;
