@@ -59,12 +59,10 @@ TEST(PartText, ADamagedTextIsRefused) {
 struct Shrub {  // the bytes of a Leaf
   double value = 0.0;
   int colour = 0;
-  friend bool operator==(const Shrub&, const Shrub&) = default;
 };
 struct Hedge {  // the members of a Leaf, the other way round
   Colour colour = Colour::Red;
   double value = 0.0;
-  friend bool operator==(const Hedge&, const Hedge&) = default;
 };
 
 TEST(PartText, ATextOfAnotherShapeIsRefused) {
