@@ -124,14 +124,20 @@ Result<Backup> Backups::begin() {
 }
 
 Result<std::vector<Backup>> Backups::list() const {
-  auto all = complete();
+  std::vector<Backup> own;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    own = own_;
+  }
+  auto all = complete();  // after them: a folder that is not there any more was removed since
   if (!all) {
     return all;
   }
-  const std::lock_guard<std::mutex> guard(mutex_);
-  for (const Backup& own : own_) {
-    std::erase_if(*all, [&](const Backup& found) { return found.name == own.name; });
-    all->push_back(own);
+  for (const Backup& backup : own) {
+    const bool made = backup.state == BackupState::Complete || backup.state == BackupState::Damaged;
+    if (std::erase_if(*all, [&](const Backup& found) { return found.name == backup.name; }) > 0 || !made) {
+      all->push_back(backup);
+    }
   }
   std::sort(all->begin(), all->end(), [](const Backup& a, const Backup& b) { return a.name > b.name; });
   return all;

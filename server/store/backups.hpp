@@ -79,7 +79,8 @@ class Backups {
   /// daemon is stopping).
   [[nodiscard]] Result<Backup> begin();
 
-  /// The backups that this process began and the complete ones in the directory, newest first. Error: Io.
+  /// The complete backups in the directory and those of this process that are under way or failed, newest first. Error:
+  /// Io.
   [[nodiscard]] Result<std::vector<Backup>> list() const;
 
   /// When the newest undamaged backup was begun; nothing if there is none or the daemon has no directory for backups.

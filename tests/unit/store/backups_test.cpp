@@ -119,6 +119,9 @@ TEST_F(MadeBackups, TheNewestCompleteOnesStay) {
   }
   EXPECT_THAT(folders(), SizeIs(2));
   EXPECT_EQ(folders().back(), ended(4).back().name);
+  EXPECT_THAT(*backups.list(), SizeIs(2)) << "those that are there";
+  std::filesystem::remove_all(folder_.path() / "backups" / folders().front());
+  EXPECT_THAT(*backups.list(), SizeIs(1)) << "whoever took it away";
 }
 
 TEST_F(MadeBackups, ADamagedStoreCostsNoOlderBackup) {
