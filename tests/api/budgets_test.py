@@ -181,12 +181,12 @@ class ConnectionsHaveABudget(unittest.TestCase):
         with Daemon(arguments=("--budget", "write_stall_seconds=2", "--budget", "send_buffer_bytes=4096")) as daemon:
             for i in range(3):
                 self.assertEqual(daemon.post("/v1/models", big_model(i, 900_000)).status, 201)
+            whole = len(daemon.get("/v1/models").body)
             with socket.socket() as slow, socket.socket() as still:
                 for connection in (slow, still):
                     connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
                     connection.connect(("127.0.0.1", daemon.port))
                     send_head(connection, "/v1/models", "Connection: close\r\n")
-                whole = len(daemon.get("/v1/models").body)
                 taken, begun, slow_for = 0, time.monotonic(), 5.0
                 while True:  # slower than all at once for longer than the deadline, then fast
                     piece = slow.recv(4096 if time.monotonic() - begun < slow_for else 65536)
