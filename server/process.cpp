@@ -28,6 +28,12 @@ void share_heaps() {
 #endif
 }
 
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);
+#endif
+}
+
 ProcessUse use_of_this_process() {
   ProcessUse use;
   std::ifstream pages("/proc/self/statm");
