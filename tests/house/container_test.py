@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """The container: built from deploy/container/Containerfile, run, asked for its main job, stopped, and run again on the same data.
 
-Label long: it installs the build's packages in a Debian image and compiles driftlab there. $DRIFTLAB_CONTAINER_BASE is an archive of a
-Debian 12 root (`mmdebstrap --variant=minbase bookworm FILE.tar`) that stands for debian:12-slim where no image registry is reached.
-Needs buildah; says so where it is absent.
+Label long: it installs the build's packages in a Debian image and compiles driftlab there. Where no image registry is reached, a Debian 12
+root that mmdebstrap makes of the packages of this machine's mirror stands for debian:12-slim; $DRIFTLAB_CONTAINER_BASE is an archive of one
+that is there already. Authorities that this machine trusts beside Debian's go into the base, for npm reaches its registry by HTTPS.
+$DRIFTLAB_CONTAINER_CCACHE is a folder of ccache that the build uses, such as ~/.cache/ccache where the same sources were compiled before.
+Needs buildah; says so where it, or whatever the base could come from, is absent.
 
-Buildah runs what it built without a container engine (`--isolation chroot`), so that the test also works inside another container.
+Buildah runs what it built without a container engine (`--isolation chroot`), so that the test also works inside another container. Images lie
+in a folder of the test and go with it.
 """
 from __future__ import annotations
 
@@ -24,15 +27,52 @@ import urllib.request
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-BASE = os.environ.get("DRIFTLAB_CONTAINER_BASE")
+GIVEN = os.environ.get("DRIFTLAB_CONTAINER_BASE")
+COMPILED = os.environ.get("DRIFTLAB_CONTAINER_CCACHE")
+DEBIAN = "debian:12-slim"
+BASE = "localhost/driftlab-test-base"
 IMAGE = "localhost/driftlab-test"
+AUTHORITIES = Path("/usr/local/share/ca-certificates")
 ISOLATED = ["--isolation", "chroot", "--network", "host"]
+STORE: list[str] = []  # where buildah keeps the images of this test
+
+
+def run(*words: str, limit_s: float = 300) -> str:
+    ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=limit_s)
+    assert ran.returncode == 0, f"{words}: {ran.returncode}\n{ran.stdout[-3000:]}{ran.stderr[-3000:]}"
+    return ran.stdout.strip()
 
 
 def buildah(*words: str, limit_s: float = 300) -> str:
-    ran = subprocess.run(["buildah", *words], capture_output=True, text=True, check=False, timeout=limit_s)
-    assert ran.returncode == 0, f"buildah {words}: {ran.returncode}\n{ran.stdout[-3000:]}{ran.stderr[-3000:]}"
-    return ran.stdout.strip()
+    return run("buildah", *STORE, *words, limit_s=limit_s)
+
+
+def open_store(folder: Path) -> None:
+    """Images as layers over each other where the file system has that, else as copies."""
+    for driver in ("overlay", "vfs"):
+        STORE[:] = ["--root", str(folder / driver), "--runroot", str(folder / f"{driver}-run"), "--storage-driver", driver]
+        try:
+            buildah("run", *ISOLATED, buildah("from", "scratch"), "--", "/nothing")
+        except AssertionError as refused:
+            if "/nothing" in str(refused):  # it was mounted, and is empty
+                buildah("rm", "--all")
+                return
+    raise AssertionError("buildah can keep no image here")
+
+
+def base_container(folder: Path) -> str:
+    """A container of debian:12-slim or of what stands for it. Skips where it can come from nowhere."""
+    if GIVEN is None:
+        try:
+            return buildah("from", DEBIAN)
+        except AssertionError as unreachable:
+            print(f"no image registry: {str(unreachable).splitlines()[-1]}", file=sys.stderr)
+        if shutil.which("mmdebstrap") is None:
+            raise unittest.SkipTest("SKIPPED: no image registry is reached, and there is no mmdebstrap to make a base (apt-get install mmdebstrap)")
+        run("mmdebstrap", "--variant=minbase", "bookworm", str(folder / "base.tar"), limit_s=1800)
+    container = buildah("from", "scratch")
+    buildah("add", container, GIVEN or str(folder / "base.tar"), "/")
+    return container
 
 
 def free_port() -> int:
@@ -48,7 +88,7 @@ class Running:
         self.port = free_port()
         entry = json.loads(buildah("inspect", container))["OCIv1"]["config"]["Entrypoint"]
         self.process = subprocess.Popen(
-            ["buildah", "run", *ISOLATED, "--volume", f"{data}:/var/lib/driftlab:rw", "--env", f"DRIFTLAB_LISTEN=127.0.0.1:{self.port}",
+            ["buildah", *STORE, "run", *ISOLATED, "--volume", f"{data}:/var/lib/driftlab:rw", "--env", f"DRIFTLAB_LISTEN=127.0.0.1:{self.port}",
              container, "--", *entry], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         for _ in range(300):
             try:
@@ -98,22 +138,26 @@ class Running:
         return code
 
 
-@unittest.skipUnless(shutil.which("buildah"), "SKIPPED: the container is not built, for there is no buildah (apt-get install buildah)")
+@unittest.skipUnless(shutil.which("buildah"), "SKIPPED: the container is not built, for there is no buildah (apt-get install buildah mmdebstrap)")
 class Container(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        text = (REPOSITORY / "deploy/container/Containerfile").read_text()
-        if BASE:
-            name = buildah("from", "scratch")
-            buildah("add", name, BASE, "/")
-            buildah("commit", name, "localhost/driftlab-test-base")
-            buildah("rm", name)
-            text = text.replace("FROM debian:12-slim", "FROM localhost/driftlab-test-base")
+        folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        open_store(folder / "images")
+        cls.addClassCleanup(lambda: (buildah("rm", "--all"), buildah("rmi", "--all", "--force")))
         begun = time.monotonic()
-        with tempfile.TemporaryDirectory() as folder:
-            described = Path(folder) / "Containerfile"
-            described.write_text(text)
-            buildah("build", *ISOLATED, "--file", str(described), "--tag", IMAGE, str(REPOSITORY), limit_s=7200)
+        base = base_container(folder)
+        for authority in sorted(AUTHORITIES.glob("*.crt")):
+            buildah("copy", base, str(authority), f"{AUTHORITIES}/")
+        home = buildah("run", *ISOLATED, base, "--", "sh", "-c", "echo ~")
+        buildah("commit", base, BASE)
+        print(f"base made in {time.monotonic() - begun:.0f} s", file=sys.stderr)
+        described = folder / "Containerfile"
+        text = (REPOSITORY / "deploy/container/Containerfile").read_text()
+        described.write_text(text.replace(f"FROM {DEBIAN}", f"FROM {BASE}"))
+        begun = time.monotonic()
+        compiled = ["--volume", f"{COMPILED}:{home}/.cache/ccache:rw"] if COMPILED else []
+        buildah("build", *ISOLATED, *compiled, "--file", str(described), "--tag", IMAGE, str(REPOSITORY), limit_s=7200)
         print(f"container built in {time.monotonic() - begun:.0f} s", file=sys.stderr)
 
     def test_it_does_its_main_job_as_an_ordinary_user_and_keeps_its_data(self) -> None:
