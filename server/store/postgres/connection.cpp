@@ -58,7 +58,7 @@ class PostgresStatement final : public EngineStatement {
 
   [[nodiscard]] Result<bool> step() override {
     if (!result_) {
-      auto result = connection_.run(sql_, values_);
+      auto result = connection_.run({std::move(sql_), std::move(values_)});
       if (!result) {
         return fail(result.error());
       }
@@ -68,6 +68,8 @@ class PostgresStatement final : public EngineStatement {
     }
     return row_ < PQntuples(result_.get());
   }
+
+  [[nodiscard]] Status run() override { return connection_.run_for_no_rows({std::move(sql_), std::move(values_)}); }
 
   [[nodiscard]] std::int64_t integer(int column) const override {
     return number_in<std::int64_t>(PQgetvalue(result_.get(), row_, column), PQgetlength(result_.get(), row_, column));
@@ -203,6 +205,7 @@ Result<PostgresResult> PostgresConnection::execute(const std::string& sql) {
 
 Status PostgresConnection::begin(std::string_view sql) {
   failure_.clear();
+  held_failure_.reset();
   const auto result = execute(std::string(sql) + kTime);
   if (!result) {
     return fail(result.error());
@@ -213,7 +216,7 @@ Status PostgresConnection::begin(std::string_view sql) {
 
 Status PostgresConnection::commit() {
   // COMMIT of a transaction in which a statement failed is a ROLLBACK, and no error.
-  if (PQtransactionStatus(handle_) != PQTRANS_INTRANS) {
+  if (PQtransactionStatus(handle_) != PQTRANS_INTRANS || !held_.empty()) {
     return fail(ErrorCode::Internal, "A transaction ended before its time.");
   }
   const auto result = execute("COMMIT");
@@ -221,6 +224,9 @@ Status PostgresConnection::commit() {
 }
 
 void PostgresConnection::roll_back() {
+  holds_ = false;
+  held_.clear();
+  held_bytes_ = 0;
   if (PQtransactionStatus(handle_) != PQTRANS_IDLE && !is_broken()) {
     const std::string failure = failure_;
     (void)execute("ROLLBACK");
@@ -248,46 +254,6 @@ Result<std::vector<std::string>> PostgresConnection::notifications(std::chrono::
     return fail(postgres_error(kConnectionLost, PQerrorMessage(handle_), name_));
   }
   return payloads;
-}
-
-Result<std::string> PostgresConnection::prepared(const std::string& sql, const std::vector<BoundValue>& values) {
-  std::string key = sql;
-  std::vector<Oid> types;
-  types.reserve(values.size());
-  for (const BoundValue& value : values) {
-    types.push_back(value.type);
-    key.append(1, '\n').append(std::to_string(value.type));
-  }
-  if (const auto kept = prepared_.find(key); kept != prepared_.end()) {
-    return kept->second;
-  }
-  std::string name = "s" + std::to_string(prepared_.size());
-  const auto made = accept(PostgresResult(PQprepare(handle_, name.c_str(), numbered_parameters(sql).c_str(),
-                                                    static_cast<int>(types.size()), types.data())));
-  if (!made) {
-    return fail(made.error());
-  }
-  prepared_.emplace(std::move(key), name);
-  return name;
-}
-
-Result<PostgresResult> PostgresConnection::run(const std::string& sql, const std::vector<BoundValue>& values) {
-  const auto name = prepared(sql, values);
-  if (!name) {
-    return fail(name.error());
-  }
-  std::vector<const char*> texts;
-  texts.reserve(values.size());
-  for (const BoundValue& value : values) {
-    texts.push_back(value.type == 0 ? nullptr : value.text.c_str());
-  }
-  auto result = accept(PostgresResult(
-      PQexecPrepared(handle_, name->c_str(), static_cast<int>(texts.size()), texts.data(), nullptr, nullptr, 0)));
-  if (result) {
-    const char* const count = PQcmdTuples(result->get());
-    changes_ = number_in<int>(count, static_cast<int>(std::strlen(count)));
-  }
-  return result;
 }
 
 std::unique_ptr<EngineStatement> PostgresConnection::make_statement(std::string_view sql) {

@@ -7,7 +7,11 @@
 #include <libpq-fe.h>
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -26,6 +30,12 @@ struct BoundValue {
   std::string text;
 };
 
+/// A text with its values.
+struct BoundStatement {
+  std::string sql;
+  std::vector<BoundValue> values;
+};
+
 class PostgresConnection final : public Connection {
  public:
   /// Connects to `uri`, postgresql://USER@HOST:PORT/DATABASE?... of libpq. Defaults for what `uri` does not set: 5 s to
@@ -42,6 +52,13 @@ class PostgresConnection final : public Connection {
   [[nodiscard]] Result<PostgresResult> execute(const std::string& sql);
   /// Begins a transaction by `sql` and takes the server's time, both in one message.
   [[nodiscard]] Status begin(std::string_view sql);
+  /// From now on until the transaction ends, what is to run without giving rows is held back: it is sent with the next
+  /// statement that gives rows, by `changes`, by `settle`, or once it is much. All of it together is one message and
+  /// one wait.
+  void hold_runs() { holds_ = true; }
+  /// Sends what is held back. The outcome of the transaction's work: `outcome`, unless what was held back failed.
+  [[nodiscard]] Status settle(Status outcome = {});
+  /// After `settle`: what is still held back is no part of the transaction.
   [[nodiscard]] Status commit();
   /// Undoes what was done since `begin`.
   void roll_back();
@@ -59,17 +76,29 @@ class PostgresConnection final : public Connection {
   /// `"driftlab" on db.example:5432`; never a password.
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  [[nodiscard]] int changes() const override { return changes_; }
+  [[nodiscard]] int changes() override { return settle() ? changes_ : 0; }
   [[nodiscard]] Engine engine() const override { return Engine::Postgres; }
 
-  /// Runs a text with its values: prepared at the first time, and kept.
-  [[nodiscard]] Result<PostgresResult> run(const std::string& sql, const std::vector<BoundValue>& values);
+  /// Runs a text with its values behind what is held back: prepared at the first time, and kept.
+  [[nodiscard]] Result<PostgresResult> run(BoundStatement statement);
+  /// The same, without its rows; held back where that was asked for.
+  [[nodiscard]] Status run_for_no_rows(BoundStatement statement);
 
  private:
   explicit PostgresConnection(PGconn* handle) : handle_(handle) {}
   [[nodiscard]] Status check_server() const;
-  [[nodiscard]] Result<std::string> prepared(const std::string& sql, const std::vector<BoundValue>& values);
   [[nodiscard]] Result<PostgresResult> accept(PostgresResult result);
+  [[nodiscard]] Result<PostgresResult> accept_run(PostgresResult result);
+  /// What the server is to answer next: that a statement is prepared, or its result.
+  struct Expected {
+    std::size_t statement = 0;
+    std::string prepares;  ///< text and types; empty: it is run
+    std::string name;
+  };
+  [[nodiscard]] Error lose(const std::string& reason);
+  [[nodiscard]] std::optional<std::vector<Expected>> send_together(std::span<const BoundStatement> statements);
+  [[nodiscard]] PostgresResult next_result();
+  [[nodiscard]] Result<PostgresResult> run_together(std::span<const BoundStatement> statements, std::size_t held);
   [[nodiscard]] std::unique_ptr<EngineStatement> make_statement(std::string_view sql) override;
 
   PGconn* handle_;
@@ -79,6 +108,11 @@ class PostgresConnection final : public Connection {
   UtcMicros begun_at_ = 0;
   int changes_ = 0;
   std::unordered_map<std::string, std::string> prepared_;  ///< text and types: name
+  std::uint64_t names_ = 0;                                ///< of prepared statements that were given
+  bool holds_ = false;
+  std::vector<BoundStatement> held_;
+  std::size_t held_bytes_ = 0;
+  std::optional<Error> held_failure_;  ///< of the first statement since `begin` that failed after it was held back
 };
 
 /// `?` and `?3` outside of literals as `$1` and `$3`. A text uses one of the two.

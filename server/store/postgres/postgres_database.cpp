@@ -61,7 +61,10 @@ Attempt run_once(PostgresConnection& connection, std::string_view begin, const s
     told.note(asked, connection.begun_at(), std::chrono::steady_clock::now());
   }
   if (status) {
-    status = guarded(work, connection);
+    if (begin != kRead) {
+      connection.hold_runs();
+    }
+    status = connection.settle(guarded(work, connection));
   }
   const bool nothing_stored = !status || !connection.failure().empty();
   if (!nothing_stored) {

@@ -2,6 +2,18 @@
 
 namespace driftlab::server {
 
+Status EngineStatement::run() {
+  while (true) {
+    const Result<bool> row = step();
+    if (!row) {
+      return fail(row.error());
+    }
+    if (!*row) {
+      return {};
+    }
+  }
+}
+
 Statement& Statement::bind(std::int64_t value) {
   engine_->bind_integer(value);
   return *this;
@@ -20,18 +32,6 @@ Statement& Statement::bind(std::string_view value) {
 Statement& Statement::bind_null() {
   engine_->bind_null();
   return *this;
-}
-
-Status Statement::run() {
-  while (true) {
-    const Result<bool> row = step();
-    if (!row) {
-      return fail(row.error());
-    }
-    if (!*row) {
-      return {};
-    }
-  }
 }
 
 std::optional<std::int64_t> Statement::optional_integer(int column) const {

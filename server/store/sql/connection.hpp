@@ -28,6 +28,7 @@ class EngineStatement {
   virtual void bind_text(std::string_view value) = 0;
   virtual void bind_null() = 0;
   [[nodiscard]] virtual Result<bool> step() = 0;
+  [[nodiscard]] virtual Status run();
   [[nodiscard]] virtual std::int64_t integer(int column) const = 0;
   [[nodiscard]] virtual double real(int column) const = 0;
   [[nodiscard]] virtual std::string text(int column) const = 0;
@@ -58,8 +59,11 @@ class Statement {
 
   /// Advances to the next row: true if there is one. Errors: DiskFull, Io, Internal (a constraint).
   [[nodiscard]] Result<bool> step() { return engine_->step(); }
-  /// Runs to the end, ignoring rows.
-  [[nodiscard]] Status run();
+  /// Runs to the end, ignoring rows. In a write an engine may let it wait for others, so that they travel to the
+  /// database in one message: it runs in its turn before a statement that is stepped, `changes` and the end of the
+  /// transaction. These tell then that it failed, and whatever the work makes of that, nothing is stored and the
+  /// transaction's error is its own.
+  [[nodiscard]] Status run() { return engine_->run(); }
 
   // Columns of the present row, from 0.
   [[nodiscard]] std::int64_t integer(int column) const { return engine_->integer(column); }
@@ -97,7 +101,7 @@ class Connection {
   [[nodiscard]] Result<std::optional<std::int64_t>> query_integer(std::string_view sql);
   [[nodiscard]] Result<std::optional<std::string>> query_text(std::string_view sql);
   /// Rows changed by the latest INSERT, UPDATE or DELETE.
-  [[nodiscard]] virtual int changes() const = 0;
+  [[nodiscard]] virtual int changes() = 0;
   [[nodiscard]] virtual Engine engine() const = 0;
 
  protected:

@@ -28,7 +28,7 @@ class SqliteConnection final : public Connection {
 
   /// Runs one or more statements without values, for migrations, pragmas and transactions.
   [[nodiscard]] Status execute(const std::string& sql);
-  [[nodiscard]] int changes() const override { return sqlite3_changes(handle_); }
+  [[nodiscard]] int changes() override { return sqlite3_changes(handle_); }
   [[nodiscard]] Engine engine() const override { return Engine::Sqlite; }
   /// Rows changed since the connection was opened, those of foreign keys' actions included.
   [[nodiscard]] std::int64_t total_changes() const { return sqlite3_total_changes64(handle_); }
