@@ -223,6 +223,8 @@ Status PostgresConnection::commit() {
   return result ? Status{} : fail(result.error());
 }
 
+void PostgresConnection::end_read() { lost_ = lost_ || PQsendQuery(handle_, "COMMIT") != 1; }
+
 void PostgresConnection::roll_back() {
   holds_ = false;
   held_.clear();

@@ -60,6 +60,8 @@ class PostgresConnection final : public Connection {
   [[nodiscard]] Status settle(Status outcome = {});
   /// After `settle`: what is still held back is no part of the transaction.
   [[nodiscard]] Status commit();
+  /// Ends a transaction that wrote nothing. What the server says to that is read when the next one begins.
+  void end_read();
   /// Undoes what was done since `begin`.
   void roll_back();
 

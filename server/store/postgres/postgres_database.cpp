@@ -66,6 +66,10 @@ Attempt run_once(PostgresConnection& connection, std::string_view begin, const s
     }
     status = connection.settle(guarded(work, connection));
   }
+  if (begin == kRead && connection.failure().empty() && !connection.is_broken()) {
+    connection.end_read();
+    return {std::move(status), false};
+  }
   const bool nothing_stored = !status || !connection.failure().empty();
   if (!nothing_stored) {
     status = connection.commit();

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <thread>
 
@@ -261,6 +262,32 @@ TEST_F(PostgresPipelineTest, WritesThatMeetAreRunAgain) {
   const auto read = store_->database().read(
       [](Connection& connection) { return connection.query_text("SELECT content FROM kept WHERE number = 1"); });
   EXPECT_EQ(read.value_or(std::nullopt), "2");
+}
+
+// The end of a read is not waited for: it must come all the same, or the server keeps what nobody needs any more.
+TEST_F(PostgresPipelineTest, AReadLeavesNoTransactionOpen) {
+  const auto observer = PostgresConnection::open(uri_, "observer");
+  ASSERT_TRUE(observer);
+  const auto open_transactions = [&] {
+    return count((*observer)->query_integer(
+        "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'driftlabd' AND xact_start IS NOT NULL"));
+  };
+  ASSERT_TRUE(store_->database().read([&](Connection& connection) -> Status {
+    EXPECT_EQ(count(connection.query_integer(kCount)), 0);
+    EXPECT_EQ(open_transactions(), 1);
+    return {};
+  }));
+  EXPECT_FALSE(store_->database().read([](Connection& connection) -> Status {
+    EXPECT_EQ(count(connection.query_integer(kCount)), 0);
+    return fail(ErrorCode::NotFound, "It is not there.");
+  }));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (open_transactions() > 0 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(open_transactions(), 0);
+  ASSERT_TRUE(write([](Connection& connection) { return add(connection, 1); }));
+  EXPECT_EQ(count(), 1);
 }
 
 TEST_F(PostgresPipelineTest, EachStatementHasItsOwnTimeAndNoMore) {
