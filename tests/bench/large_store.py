@@ -9,12 +9,14 @@ campaigns: all first recordings, all second ones, ... So 100,000 devices are 10^
 copied, for each of its rows has the hash of the row before. Files are not there: what is measured are rows.
 
 DRIFTLAB_BENCH_FIRST=1: what is measured has the processor before whatever else the machine does (SCHED_RR; needs root).
+DRIFTLAB_BENCH_COLD=1: before it is asked the database begins anew with 64 MB of shared buffers, and the system forgets its pages.
 With OLD_DAEMON, a driftlabd of an earlier schema, the rows are written for that; then DRIFTLABD migrates them while a reader asks.
 """
 from __future__ import annotations
 
 import os
 import random
+import signal
 import statistics
 import sys
 import tempfile
@@ -143,7 +145,7 @@ def vacuum(server: postgres.Cluster, folder: Path) -> None:
     schema = server.schema_of(folder)
     for change in ("state = 'running', lease_expires_at = 1, finished_at = NULL", "stage = 'fit', progress = 0.5", "lease_expires_at = 2",
                    "state = 'succeeded', finished_at = 1, lease_expires_at = NULL, stage = '', progress = 1"):
-        server.sql(f"UPDATE {schema}.jobs SET {change} WHERE id IN (SELECT id FROM {schema}.jobs ORDER BY id LIMIT 100000)")
+        server.sql(f"SET search_path = {schema}; UPDATE jobs SET {change} WHERE id IN (SELECT id FROM jobs ORDER BY id LIMIT 100000)")
     time.sleep(1)
     live, dead, hot = server.rows(folder, f"SELECT n_live_tup, n_dead_tup, n_tup_hot_upd FROM pg_stat_all_tables WHERE relname = 'jobs' AND schemaname = '{schema}'")[0]
     print(f"\nqueue: {live:,} rows, {dead:,} of them dead after four updates of 100,000 ({hot:,} of these touched no index)")
@@ -176,6 +178,20 @@ def come_first(server: postgres.Cluster) -> None:
         os.sched_setscheduler(process, os.SCHED_RR, os.sched_param(1))
 
 
+def forget_pages(server: postgres.Cluster) -> None:
+    """What is read then comes from the disk."""
+    server.server.send_signal(signal.SIGINT)
+    server.server.wait()
+    for path in (server.folder / "data/base").rglob("*"):
+        if path.is_file():
+            pages = os.open(path, os.O_RDONLY)
+            os.fsync(pages)
+            os.posix_fadvise(pages, 0, 0, os.POSIX_FADV_DONTNEED)
+            os.close(pages)
+    server.settings = (*server.settings, "shared_buffers=64MB")
+    server.start()
+
+
 def main() -> None:
     postgres.PATIENCE_S = 3600.0
     devices = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
@@ -190,6 +206,8 @@ def main() -> None:
         begun = time.monotonic()
         server.sql(f"SET search_path = {server.schema_of(folder)}; ANALYZE")
         print(f"ANALYZE: {time.monotonic() - begun:.1f} s", flush=True)
+        if os.environ.get("DRIFTLAB_BENCH_COLD"):
+            forget_pages(server)
         if os.environ.get("DRIFTLAB_BENCH_FIRST"):
             come_first(server)
         daemons.PROGRAM, daemons.PATIENCE_S = new, 3600.0
