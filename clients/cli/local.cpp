@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <thread>
 #include <utility>
 
 namespace driftlab::cli {
@@ -22,7 +23,9 @@ tl::expected<CharacterisedCampaign, Failure> characterise_here(const Inputs& inp
     return tl::unexpected(Failure{files.error(), Exit::BadInput});
   }
   ProgressBar bar;
-  const RunControl control{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }};
+  Executor executor(std::thread::hardware_concurrency());
+  const RunControl control{
+      interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }, {&executor}};
   auto found = characterise_campaign(**files, options, control);
   if (!found) {
     const Exit exit = found.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;

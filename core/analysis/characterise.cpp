@@ -3,9 +3,19 @@
 #include "core/analysis/unit_notes.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <optional>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace driftlab {
+namespace {
+
+/// Channels of recordings of at most so many rows are characterised side by side: each takes its memory.
+constexpr std::size_t kMostRowsSideBySide = 400'000;
+
+}  // namespace
 
 Result<PreparedRecording> PreparedRecording::make(const RecordingSpec& spec, RecordingView view,
                                                   const Calibration& calibration) {
@@ -70,15 +80,30 @@ Result<CharacterisedChannel> PreparedRecording::characterise(std::size_t channel
 
 Result<CharacterisedRecording> characterise_recording(const PreparedRecording& recording,
                                                       const CharacteriseOptions& options, const RunControl& control) {
+  const std::size_t count = recording.channels();
+  std::vector<std::optional<Result<CharacterisedChannel>>> channels(count);
+  std::atomic<std::size_t> done{0};
+  const auto caller = std::this_thread::get_id();  // of the threads that share the channels it alone reports
+  const auto characterise_one = [&](std::size_t c) {
+    const RunControl part = control.reporting([&](std::string_view stage, double fraction) {
+      if (std::this_thread::get_id() == caller) {
+        control.report(stage, (static_cast<double>(done) + fraction) / static_cast<double>(count));
+      }
+    });
+    channels[c] = recording.characterise(c, options, part);
+    ++done;
+  };
+  const bool side_by_side = recording.frame().window.count <= kMostRowsSideBySide;
+  parallel_for(side_by_side ? control.threads : ThreadShare{}, count, characterise_one, control.stop);
   CharacterisedRecording found = recording.frame();
-  const auto count = static_cast<double>(recording.channels());
-  for (std::size_t c = 0; c < recording.channels(); ++c) {
-    const auto done = static_cast<double>(c);
-    auto channel = recording.characterise(c, options, part_of(control, done / count, (done + 1.0) / count));
+  for (std::optional<Result<CharacterisedChannel>>& channel : channels) {
     if (!channel) {
-      return fail(channel.error());
+      return fail(ErrorCode::Cancelled, "The characterisation was cancelled.");
     }
-    found.channels.push_back(std::move(*channel));
+    if (!*channel) {
+      return fail(channel->error());
+    }
+    found.channels.push_back(std::move(**channel));
   }
   return found;
 }

@@ -60,7 +60,8 @@ class PreparedRecording {
   CharacterisedRecording frame_;
 };
 
-/// All channels of a prepared recording. Progress runs over them. Errors: those of PreparedRecording::characterise.
+/// All channels of a prepared recording, those of a short one as tasks of `control.threads`. Progress runs over them.
+/// Errors: those of PreparedRecording::characterise; of several channels that fail, that of the first.
 [[nodiscard]] Result<CharacterisedRecording> characterise_recording(const PreparedRecording& recording,
                                                                     const CharacteriseOptions& options,
                                                                     const RunControl& control);

@@ -55,6 +55,38 @@ TEST(CharacteriseRecording, GapsCostOnlyWhatTouchesThem) {
   EXPECT_FALSE(params[1]["params"]["K"].is_null());
 }
 
+TEST(CharacteriseRecording, IsTheSameForAnyNumberOfThreads) {
+  const Recorded recorded = with_gaps();
+  std::vector<std::vector<double>> axes(3, recorded.values);
+  for (std::size_t i = 0; i < recorded.values.size(); ++i) {
+    axes[1][i] = 0.5 * recorded.values[i] * recorded.values[i];
+    axes[2][i] += 1e-3 * static_cast<double>(i % 7);
+  }
+  const RecordingSpec spec;
+  auto view =
+      view_recording(spec, {"time (s)", "gx (rad/s)", "gy (rad/s)", "gz (rad/s)"}, recorded.time.size(),
+                     [&](std::size_t i) { return std::span<const double>(i == 0 ? recorded.time : axes[i - 1]); });
+  ASSERT_TRUE(view) << view.error().message;
+  const auto prepared = PreparedRecording::make(spec, std::move(*view), {});
+  ASSERT_TRUE(prepared);
+  const std::string one = to_text(to_json(*characterise_recording(*prepared, {}, {})));
+  Executor executor(4);
+  RunControl control;
+  control.threads.executor = &executor;
+  double last = 0.0;
+  control.progress = [&last](std::string_view, double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  };
+  EXPECT_EQ(to_text(to_json(*characterise_recording(*prepared, {}, control))), one);
+  std::stop_source stopped;
+  stopped.request_stop();
+  control.stop = stopped.get_token();
+  const auto cancelled = characterise_recording(*prepared, {}, control);
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error().code, ErrorCode::Cancelled);
+}
+
 TEST(Calibration, IsReadAsItIsWritten) {
   TriadCalibration made;
   made.law.matrix = {Triple{1.1, 0.01, 0.0}, Triple{0.0, 0.9, 0.02}, Triple{0.03, 0.0, 1.05}};
