@@ -10,7 +10,6 @@
 #include "core/analysis/told_characterisation.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
-#include "server/jobs/job_kind.hpp"
 #include "server/jobs/job_parts.hpp"
 #include "server/jobs/line_verdicts.hpp"
 #include "server/jobs/stored_recordings.hpp"
@@ -120,7 +119,7 @@ std::string_view instruction_set() {
 #endif
 }
 
-class Characterise final : public JobKind {
+class Characterise final : public DividedKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "characterise"; }
   [[nodiscard]] int version() const override { return kAlgorithmVersion; }
@@ -165,12 +164,6 @@ class Characterise final : public JobKind {
       cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
     return cost;
-  }
-
-  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
-                                       const RunControl& control) const override {
-    PartsHere here;
-    return run_in_parts(request, context, control, here);
   }
 
   [[nodiscard]] Result<JobResults> run_in_parts(const Json& request, JobContext& context, const RunControl& control,

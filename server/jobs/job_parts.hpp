@@ -10,6 +10,7 @@
 /// A part that fails leaves an empty text. The job's own worker computes it again when its turn comes, and the failure
 /// is then that of its own attempt: the job fails as it would have failed alone.
 #include "core/signal/progress.hpp"
+#include "server/jobs/job_kind.hpp"
 #include "server/jobs/part_text.hpp"
 #include "server/store/part_store.hpp"
 
@@ -72,6 +73,18 @@ template <class Value, class Compute, class Take>
 class PartsHere final : public JobParts {
  public:
   [[nodiscard]] Status share(std::size_t count, const Part& part, const Take& take, const RunControl& control) override;
+};
+
+/// A kind whose work goes through parts; where nobody helps, one after the other.
+class DividedKind : public JobKind {
+ public:
+  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
+                                       const RunControl& control) const final {
+    PartsHere here;
+    return run_in_parts(request, context, control, here);
+  }
+  [[nodiscard]] Result<JobResults> run_in_parts(const Json& request, JobContext& context, const RunControl& control,
+                                                JobParts& parts) const override = 0;
 };
 
 /// The part that a worker has claimed, whose lease another thread renews meanwhile.

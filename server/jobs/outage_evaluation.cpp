@@ -8,7 +8,6 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "schema/json/outage_scenario.hpp"
-#include "server/jobs/job_kind.hpp"
 #include "server/jobs/job_parts.hpp"
 #include "server/jobs/stored_models.hpp"
 
@@ -35,7 +34,7 @@ void add_biases(Json& scenario, const StoredSensors& sensors, const std::string&
   }
 }
 
-class OutageEvaluationKind final : public JobKind {
+class OutageEvaluationKind final : public DividedKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "outage_evaluation"; }
   [[nodiscard]] int version() const override { return kOutageAlgorithmVersion; }
@@ -85,12 +84,6 @@ class OutageEvaluationKind final : public JobKind {
     cost.memory_bytes += static_cast<std::int64_t>(kBytesPerSample * epochs);
     cost.shared_seconds = epochs * runs * static_cast<double>(scenario.filters.size()) / kEpochsPerSecond;
     return cost;
-  }
-
-  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
-                                       const RunControl& control) const override {
-    PartsHere here;
-    return run_in_parts(request, context, control, here);
   }
 
   [[nodiscard]] Result<JobResults> run_in_parts(const Json& request, JobContext& /*context*/, const RunControl& control,

@@ -20,10 +20,10 @@ constexpr std::size_t kParts = 12;
 std::string square(std::size_t number) { return std::to_string(number * number) + " "; }
 
 /// Concatenates what its parts find.
-class DividedKind final : public JobKind {
+class SquaresKind final : public DividedKind {
  public:
   using Compute = std::function<Result<std::string>(std::size_t number, const RunControl& control)>;
-  explicit DividedKind(Compute compute, std::size_t enough = kParts) : compute_(std::move(compute)), enough_(enough) {}
+  explicit SquaresKind(Compute compute, std::size_t enough = kParts) : compute_(std::move(compute)), enough_(enough) {}
   [[nodiscard]] std::string_view name() const override { return "toy"; }
   [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& /*parameters*/,
                                                JobContext& /*context*/) const override {
@@ -31,11 +31,6 @@ class DividedKind final : public JobKind {
   }
   [[nodiscard]] JobCost cost(const Json& /*request*/, JobContext& /*context*/) const override {
     return {JobCost{}.memory_bytes, 10.0};
-  }
-  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
-                                       const RunControl& control) const override {
-    PartsHere here;
-    return run_in_parts(request, context, control, here);
   }
   [[nodiscard]] Result<JobResults> run_in_parts(const Json& /*request*/, JobContext& /*context*/,
                                                 const RunControl& control, JobParts& parts) const override {
@@ -59,14 +54,14 @@ class DividedKind final : public JobKind {
 /// A world whose pools run a divided kind.
 class DividedWorld : public ToyWorld {
  public:
-  explicit DividedWorld(DividedKind::Compute compute, std::size_t enough = kParts)
+  explicit DividedWorld(SquaresKind::Compute compute, std::size_t enough = kParts)
       : ToyWorld(succeed_at_once), divided(std::move(compute), enough) {}
   std::unique_ptr<WorkerPool> divided_pool(WorkerOptions options) {
     return pool_of(std::move(options), [this](std::string_view name) -> const JobKind* {
       return name == divided.name() ? &divided : nullptr;
     });
   }
-  DividedKind divided;
+  SquaresKind divided;
 };
 
 WorkerOptions eager(int threads) {
