@@ -243,12 +243,12 @@ Result<OutageBatch> OutageBatches::run(std::size_t number, const RunControl& con
   const std::size_t count = std::min(state_->batch, state_->most - first);
   OutageBatch batch;
   batch.scores.resize(count);
-  DrawnRun drawn;
   std::atomic<std::size_t> done{0};
   const auto caller = std::this_thread::get_id();  // of the threads that share the runs it alone reports
   const auto task = [&](std::size_t i) {
     const std::size_t run = first + i;
-    batch.scores[i] = state_->experiment.run(state_->options.seed, run, run == 0 ? &drawn : nullptr, control.stop);
+    batch.scores[i] =
+        state_->experiment.run(state_->options.seed, run, run == 0 ? &batch.drawn : nullptr, control.stop);
     const std::size_t finished = ++done;
     if (std::this_thread::get_id() == caller) {
       control.report(state_->stage, static_cast<double>(finished) / static_cast<double>(count));
@@ -258,8 +258,6 @@ Result<OutageBatch> OutageBatches::run(std::size_t number, const RunControl& con
   if (control.stop.stop_requested()) {
     return fail(ErrorCode::Cancelled, "The outage evaluation was cancelled.");
   }
-  batch.paths = std::move(drawn.paths);
-  batch.tracks = std::move(drawn.tracks);
   return batch;
 }
 
@@ -274,15 +272,16 @@ Result<bool> OutageBatches::add(OutageBatch batch) {
                        [&](const auto& filter) { return filter.size() == scenario.outages.size(); });
   }
   if (scores.empty()) {
-    fits = fits && batch.paths.size() == scenario.filters.size() && batch.tracks.size() == scenario.filters.size() &&
-           std::all_of(batch.tracks.begin(), batch.tracks.end(),
+    fits = fits && batch.drawn.paths.size() == scenario.filters.size() &&
+           batch.drawn.tracks.size() == scenario.filters.size() &&
+           std::all_of(batch.drawn.tracks.begin(), batch.drawn.tracks.end(),
                        [&](const auto& tracks) { return tracks.size() == scenario.outages.size(); });
   }
   if (!fits) {
     return fail(ErrorCode::InvalidArgument, "The batch of runs is not one of this evaluation.");
   }
   if (scores.empty()) {
-    state_->drawn = {std::move(batch.paths), std::move(batch.tracks)};
+    state_->drawn = std::move(batch.drawn);
   }
   const std::size_t told = scores.size() / state_->telling;
   scores.insert(scores.end(), std::make_move_iterator(batch.scores.begin()),

@@ -108,13 +108,16 @@ struct OutageEvaluation {
   [[nodiscard]] std::optional<PairedDifference> difference(std::string_view filter, std::string_view against) const;
 };
 
+/// What is drawn of the first run: for each filter its path, and its track around each outage.
+struct DrawnRun {
+  std::vector<OutagePath> paths;
+  std::vector<std::vector<OutagePath>> tracks;  ///< [filter][outage]
+};
+
 /// Consecutive runs of an evaluation: what one of several computers that share it works out at a time.
 struct OutageBatch {
   std::vector<std::vector<std::vector<OutageScore>>> scores;  ///< [run][filter][outage]
-  /// Of the first batch alone, what is drawn of the first run: for each filter its path, and its track around each
-  /// outage.
-  std::vector<OutagePath> paths;
-  std::vector<std::vector<OutagePath>> tracks;
+  DrawnRun drawn;                                             ///< of the first batch alone
 };
 
 /// An evaluation in batches: `run` gives the same batch wherever and whenever it is called, `add` takes them in order.

@@ -4,12 +4,6 @@
 
 namespace driftlab {
 
-/// What is drawn of the first run: for each filter its path, and its track around each outage.
-struct DrawnRun {
-  std::vector<OutagePath> paths;
-  std::vector<std::vector<OutagePath>> tracks;  ///< [filter][outage]
-};
-
 /// A scenario made ready: its truth and the designs of its filters. Immutable; shared by threads.
 class OutageExperiment {
  public:

@@ -57,7 +57,7 @@ TEST(OutageBatches, AreTheEvaluationWhereverEachIsWorkedOut) {
   ASSERT_EQ(here.count(), 3U);
   const auto last = elsewhere.run(2, {});
   EXPECT_EQ(last->scores.size(), 5U);
-  EXPECT_TRUE(last->paths.empty());
+  EXPECT_TRUE(last->drawn.paths.empty());
   EXPECT_TRUE(*here.add(*here.run(0, {})));
   EXPECT_FALSE(here.add(*last)) << "not the second batch";
   EXPECT_TRUE(*here.add(*elsewhere.run(1, {})));
