@@ -1,12 +1,7 @@
 // What a job says once it has ended, and what its failed attempts said, is what was written or is not shown.
 #include "server/store/damaged_row.hpp"
 #include "server/store/retry_policy.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
-#include "tests/unit/store/store_suite.hpp"
-
-#ifdef DRIFTLAB_POSTGRES
-#include "server/store/postgres/postgres_store.hpp"
-#endif
+#include "tests/unit/store/row_suite.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -17,20 +12,10 @@ using testing::IsEmpty;
 const AttemptFailure kFinal{R"({"detail":"Too few samples."})", false, false};
 const AttemptFailure kPassing{R"({"detail":"The disk is full."})", true, false};
 
-class JobSeals : public StoreSuite {
+class JobSeals : public RowSuite {
  protected:
-  Database& database() {
-#ifdef DRIFTLAB_POSTGRES
-    if (auto* const postgres = dynamic_cast<PostgresStore*>(&store())) {
-      return postgres->database();
-    }
-#endif
-    return dynamic_cast<SqliteStore&>(store()).database();
-  }
-  SqlStore& rows() { return dynamic_cast<SqlStore&>(store()); }
-
   void SetUp() override {
-    StoreSuite::SetUp();
+    RowSuite::SetUp();
     rows().tell_damage_to([this](const Error& error) { told_.push_back(damaged_row_of(error)); });
   }
 

@@ -2,12 +2,7 @@
 // of them back.
 #include "server/store/retry_policy.hpp"
 #include "server/store/sql/seals.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
-#include "tests/unit/store/store_suite.hpp"
-
-#ifdef DRIFTLAB_POSTGRES
-#include "server/store/postgres/postgres_store.hpp"
-#endif
+#include "tests/unit/store/row_suite.hpp"
 
 #include <map>
 
@@ -25,18 +20,8 @@ std::optional<Error> error_of(const Result<Row>& result) {
   return result ? std::nullopt : std::optional(result.error());
 }
 
-class SealedRows : public StoreSuite {
+class SealedRows : public RowSuite {
  protected:
-  Database& database() {
-#ifdef DRIFTLAB_POSTGRES
-    if (auto* const postgres = dynamic_cast<PostgresStore*>(&store())) {
-      return postgres->database();
-    }
-#endif
-    return dynamic_cast<SqliteStore&>(store()).database();
-  }
-  SqlStore& rows() { return dynamic_cast<SqlStore&>(store()); }
-
   /// A row in every sealed table, and how each is read.
   Readers fill();
 
