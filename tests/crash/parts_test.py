@@ -132,9 +132,13 @@ class JobsInParts(unittest.TestCase):
             job = monte_carlo(workers.door)
             workers.wait_for(f"SELECT count(*) >= 2 FROM job_parts WHERE job_id = '{job}' AND state = 'finished'")
             workers.door.kill()  # it claimed the job, or helped: whichever, one process is left
-            found = workers.rows(f"SELECT number, md5(result) FROM job_parts WHERE job_id = '{job}' AND state = 'finished' ORDER BY 1")
+            kept = f"SELECT number, md5(result) FROM job_parts WHERE job_id = '{job}' AND state = 'finished' ORDER BY 1"
+            found = workers.rows(kept)
             workers.wait_for(f"SELECT count(*) > {len(found)} OR (SELECT finished_at IS NOT NULL FROM jobs WHERE id = '{job}') "
                              f"FROM job_parts WHERE job_id = '{job}' AND state = 'finished'")
+            later = workers.rows(kept)
+            if workers.rows(f"SELECT finished_at IS NULL FROM jobs WHERE id = '{job}'")[0][0]:
+                self.assertEqual([part for part in found if part not in later], [], "what was found stays")
             with Daemon(workers.folder / "another door", arguments=workers.together) as door:
                 self.assertEqual(door.finished(job)["state"], "succeeded")
                 self.assertEqual(told(door, job), expected)
