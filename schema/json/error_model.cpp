@@ -134,7 +134,10 @@ Json to_json(const Model& model, Dimension channel) {
   return processes_json(model, [&](const Process& process, std::size_t k) {
     const ParameterSpec& spec = process.kind->parameters[k];
     const ParameterUnit unit = lab_unit(spec.channel_power == 0 ? Dimension::One : channel, spec.second_power_halves);
-    return Json{{"value", number(process.parameters[k] * unit.per_si)}, {"unit", unit.symbol}};
+    // By the very factor that it is read with.
+    const auto factor = parameter_factor(unit.symbol, channel, spec);
+    return Json{{"value", number_in(process.parameters[k], factor ? *factor : 1.0 / unit.per_si)},
+                {"unit", unit.symbol}};
   });
 }
 

@@ -181,7 +181,7 @@ Json schedule_to_json(const ModelSchedule& schedule, Dimension dimension) {
   Json bounds = Json::array();
   Json models = Json::array();
   for (const double bound : schedule.bounds_rad_s()) {
-    bounds.push_back(number(bound / kDegree));
+    bounds.push_back(number_in(bound, kDegree));
   }
   for (std::size_t band = 0; band < schedule.size(); ++band) {
     models.push_back(to_json(schedule.model(band), dimension));
@@ -189,7 +189,7 @@ Json schedule_to_json(const ModelSchedule& schedule, Dimension dimension) {
   return Json{{"by_rate",
                {{"bounds_deg_s", std::move(bounds)},
                 {"processes", std::move(models)},
-                {"hysteresis_deg_s", number(schedule.hysteresis_rad_s() / kDegree)}}}};
+                {"hysteresis_deg_s", number_in(schedule.hysteresis_rad_s(), kDegree)}}}};
 }
 
 Json sensor_to_json(const ImuModel& model, std::size_t first) {
@@ -199,9 +199,9 @@ Json sensor_to_json(const ImuModel& model, std::size_t first) {
     const Dimension dimension = dimension_of(first);
     Json document = schedule_to_json(axis.processes, dimension);
     if (first == 0) {
-      document["constant_bias_sd_deg_s"] = number(axis.bias_sd / kDegree);
+      document["constant_bias_sd_deg_s"] = number_in(axis.bias_sd, kDegree);
     } else {
-      document["constant_bias_sd_mg"] = number(axis.bias_sd / kMilliG);
+      document["constant_bias_sd_mg"] = number_in(axis.bias_sd, kMilliG);
     }
     sensor[kAxes[k]] = std::move(document);
   }
@@ -242,7 +242,7 @@ Json hardware_to_json(const ImuHardware& hardware, std::size_t first) {
   const auto add = [&](const char* name, const std::array<double, kImuChannels>& values, double per) {
     const auto* const begin = values.data() + first;
     if (std::any_of(begin, begin + 3, [](double v) { return v != 0.0; })) {
-      document[name] = Json{number(begin[0] / per), number(begin[1] / per), number(begin[2] / per)};
+      document[name] = Json{number_in(begin[0], per), number_in(begin[1], per), number_in(begin[2], per)};
     }
   };
   add("bias", hardware.bias, unit);
@@ -254,7 +254,7 @@ Json hardware_to_json(const ImuHardware& hardware, std::size_t first) {
   if (!matrix.isZero(0.0)) {
     Json rows = Json::array();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      rows.push_back(Json{number(matrix(i, 0) * 1e3), number(matrix(i, 1) * 1e3), number(matrix(i, 2) * 1e3)});
+      rows.push_back(Json{number_in(matrix(i, 0), 1e-3), number_in(matrix(i, 1), 1e-3), number_in(matrix(i, 2), 1e-3)});
     }
     document["misalignment_mrad"] = std::move(rows);
   }

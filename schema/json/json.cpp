@@ -1,7 +1,12 @@
 #include "schema/json/json.hpp"
 
+#include "core/signal/number.hpp"
+
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 template class nlohmann::basic_json<nlohmann::ordered_map>;
@@ -171,6 +176,41 @@ std::string canonical_text(const Json& document) {
 std::string to_text(const Json& document) { return document.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+namespace {
+
+double rounded_to(double value, int digits) {
+  std::array<char, 32> text{};
+  const auto [stop, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, digits - 1);
+  return parse_double(std::string_view(text.data(), static_cast<std::size_t>(stop - text.data()))).value_or(value);
+}
+
+}  // namespace
+
+Json number_in(double si, double unit) {
+  const double quotient = si / unit;
+  if (quotient == 0.0 || !std::isfinite(quotient)) {
+    return number(quotient);
+  }
+  for (const int digits : {15, 16}) {
+    const double rounded = rounded_to(quotient, digits);
+    if (rounded * unit == si) {
+      return rounded;
+    }
+  }
+  // Multiplying and dividing move a number by at most two of its last digits.
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  double candidate = std::nextafter(std::nextafter(quotient, -kInfinite), -kInfinite);
+  for (int step = 0; step < 5; ++step) {
+    if (candidate * unit == si) {
+      return candidate;
+    }
+    candidate = std::nextafter(candidate, kInfinite);
+  }
+  const double nearest = quotient * unit;
+  return nearest != 0.0 && std::isfinite(nearest) ? number_in(nearest, unit) : number(quotient);
+}
 
 Json numbers(std::span<const double> values, double factor) {
   Json list = Json::array();

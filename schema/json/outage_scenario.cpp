@@ -285,7 +285,7 @@ Json trajectory_to_json(const OutageScenario& scenario) {
   for (const Segment& segment : drive.segments) {
     Json item{{"t_s", number(segment.start_s)}, {"kind", name_of(segment.kind)}};
     if (segment.kind == SegmentKind::Turn || segment.kind == SegmentKind::SCurve) {
-      item["rate_deg_s"] = number(segment.rate_rad_s / kDegree);
+      item["rate_deg_s"] = number_in(segment.rate_rad_s, kDegree);
       item["duration_s"] = number(segment.duration_s);
     } else if (segment.kind != SegmentKind::Straight) {
       item["m_s2"] = number(segment.acceleration_m_s2);
@@ -295,9 +295,9 @@ Json trajectory_to_json(const OutageScenario& scenario) {
   }
   Json trajectory{{"start",
                    {{"speed_m_s", number(drive.speed_m_s)},
-                    {"heading_deg", number(drive.heading_rad / kDegree)},
-                    {"latitude_deg", number(drive.start.latitude_rad / kDegree)},
-                    {"longitude_deg", number(drive.start.longitude_rad / kDegree)},
+                    {"heading_deg", number_in(drive.heading_rad, kDegree)},
+                    {"latitude_deg", number_in(drive.start.latitude_rad, kDegree)},
+                    {"longitude_deg", number_in(drive.start.longitude_rad, kDegree)},
                     {"height_m", number(drive.start.height_m)}}},
                   {"ramp_s", number(drive.ramp_s)}};
   if (scenario.recorded.empty()) {
@@ -412,8 +412,8 @@ Json to_json(const OutageScenario& scenario) {
                 {"initial",
                  {{"position_sd_m", three_json(scenario.initial.position_sd_m)},
                   {"velocity_sd_m_s", three_json(scenario.initial.velocity_sd_m_s)},
-                  {"tilt_sd_deg", number(scenario.initial.tilt_sd_rad / kDegree)},
-                  {"heading_sd_deg", number(scenario.initial.heading_sd_rad / kDegree)}}},
+                  {"tilt_sd_deg", number_in(scenario.initial.tilt_sd_rad, kDegree)},
+                  {"heading_sd_deg", number_in(scenario.initial.heading_sd_rad, kDegree)}}},
                 {"filters", std::move(filters)}};
   const FilterSettings& shared = scenario.filters.front().settings;
   document["gnss_velocity"] = shared.use_velocity ? "used" : "not used";

@@ -70,9 +70,9 @@ Json recorded_to_json(const std::vector<RecordedPose>& poses) {
     const Vector3& v = pose.velocity_ned_m_s;
     times.push_back(number(pose.time_s));
     velocities.push_back(Json{number(v.x()), number(v.y()), number(v.z())});
-    roll.push_back(number(pose.attitude.roll_rad / kDegree));
-    pitch.push_back(number(pose.attitude.pitch_rad / kDegree));
-    heading.push_back(number(pose.attitude.heading_rad / kDegree));
+    roll.push_back(number_in(pose.attitude.roll_rad, kDegree));
+    pitch.push_back(number_in(pose.attitude.pitch_rad, kDegree));
+    heading.push_back(number_in(pose.attitude.heading_rad, kDegree));
   }
   return Json{{"time_s", std::move(times)},
               {"velocity_ned_m_s", std::move(velocities)},

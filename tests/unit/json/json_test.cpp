@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
 
 namespace driftlab {
 namespace {
@@ -108,6 +110,33 @@ TEST(Writing, GivesDoublesBackBitForBit) {
     ASSERT_TRUE(back);
     EXPECT_EQ(back->get<double>(), value);
   }
+}
+
+/// What somebody wrote comes back, in units that no power of two leads to; and any value is written as one that is
+/// written the same again.
+TEST(NumberIn, GivesBackWhatWasWritten) {
+  std::mt19937_64 random(20261129);
+  std::uniform_int_distribution<int> digits(1, 999'999);
+  std::uniform_real_distribution<double> magnitude(-30.0, 30.0);
+  for (const double unit : {std::numbers::pi / 180.0, std::numbers::pi / 180.0 / 60.0, 9.80665e-3, 1e-3, 1e-6, 1.0}) {
+    for (int k = 0; k < 20'000; ++k) {
+      const double written = digits(random) / 1e4;
+      EXPECT_EQ(number_in(written * unit, unit), written) << "times " << unit;
+      const double si = std::pow(10.0, magnitude(random));
+      const double once = number_in(si, unit).get<double>();
+      EXPECT_EQ(number_in(once * unit, unit), once) << si << " in " << unit;
+      EXPECT_NEAR(once * unit / si, 1.0, 4e-16);
+    }
+  }
+}
+
+TEST(NumberIn, HoldsAtTheEndsOfADouble) {
+  EXPECT_EQ(number_in(0.0, 1e-3), 0.0);
+  EXPECT_EQ(number_in(-2e-3, 1e-3), -2.0);
+  EXPECT_TRUE(number_in(1e308, 1e-3).is_null()) << "too large for its unit";
+  EXPECT_TRUE(number_in(std::numeric_limits<double>::quiet_NaN(), 1.0).is_null());
+  const double tiny = number_in(5e-324, 1e-3).get<double>();
+  EXPECT_EQ(number_in(tiny * 1e-3, 1e-3), tiny);
 }
 
 TEST(ObjectReader, ReportsEveryFaultAtItsPlace) {
