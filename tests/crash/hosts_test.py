@@ -13,10 +13,9 @@ import os
 import random
 import sys
 import tempfile
-import threading
 import time
 import unittest
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,7 +61,6 @@ class Busy(Client):
 
     def __init__(self, lab: Lab, told: Told, seed: int) -> None:
         super().__init__(lab.daemons, told, seed)
-        self.stop = threading.Event()
 
     def run(self) -> None:
         pending: list[str] = []
@@ -122,8 +120,10 @@ class Lab:
         self.running[name] = daemon
 
     def kill(self, *names: str) -> None:
+        """Those of them that run: another fault may have been there before."""
         for name in names:
-            self.running.pop(name).kill()
+            if name in self.running:
+                self.running.pop(name).kill()
 
     def daemons(self) -> list[Daemon]:
         running = dict(self.running)
@@ -177,7 +177,12 @@ class Lab:
         return [kinds[name]() for name in names]
 
     def killed(self, kind: str, names: list[str]) -> Fault:
-        return Fault(kind, lambda: self.kill(*names), lambda: [self.start(name) for name in names] and None)
+        return Fault(kind, lambda: self.kill(*names), lambda: self.start_again(names))
+
+    def start_again(self, names: Sequence[str]) -> None:
+        for name in names:
+            if name not in self.running:
+                self.start(name)
 
     def cut_off(self, kind: str, name: str) -> Fault:
         return Fault(kind, self.hosts[name].cut_off, self.hosts[name].connect)

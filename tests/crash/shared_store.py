@@ -45,10 +45,13 @@ class Client(threading.Thread):
         super().__init__()
         self.daemons, self.told, self.random = daemons, told, random.Random(seed)
         self.failure = ""
+        self.stop = threading.Event()
 
     def any_daemon(self) -> Daemon:
+        """Waits for one, unless it is to stop."""
         while not (there := self.daemons()):
-            time.sleep(0.05)
+            if self.stop.wait(0.05):
+                raise ConnectionError("nobody is there any more")
         return self.random.choice(there)
 
     def content(self) -> bytes:
