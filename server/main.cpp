@@ -4,6 +4,7 @@
 #include "server/daemon.hpp"
 #include "server/manual_commands.hpp"
 #include "server/move_store.hpp"
+#include "server/moved_tables.hpp"
 #include "server/observe/log.hpp"
 #include "server/process.hpp"
 #include "server/program_version.hpp"
@@ -140,7 +141,7 @@ int tell(const char* what, const driftlab::Result<driftlab::server::StoreReport>
   return report->faults.empty() ? 0 : 1;
 }
 
-int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved) {
+int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved, bool ahead) {
   if (!moved) {
     std::fprintf(stderr, "driftlabd: %s\n", moved.error().message.c_str());
     return moved.error().code == driftlab::ErrorCode::Conflict ||
@@ -148,14 +149,21 @@ int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved) {
                ? 2
                : 1;
   }
-  if (moved->tables == 0) {
-    std::printf("copied ahead: %lld recordings, %lld of them in this run\n", static_cast<long long>(moved->blobs),
-                static_cast<long long>(moved->new_blobs));
+  const driftlab::server::MovedRows& rows = moved->rows;
+  const auto count = [](std::int64_t number) { return static_cast<long long>(number); };
+  if (ahead) {
+    std::printf(
+        "copied ahead: %lld recordings, %lld of them in this run; %lld rows, %lld new, %lld changed, %lld gone\n",
+        count(moved->blobs), count(moved->new_blobs), count(rows.rows), count(rows.added), count(rows.changed),
+        count(rows.removed));
+    if (!moved->rows_left.empty()) {
+      std::printf("rows are left for the move itself: %s\n", moved->rows_left.c_str());
+    }
     return 0;
   }
   std::printf("moved: %lld rows of %d tables and %lld recordings, %lld and %lld of them in this run; all compared\n",
-              static_cast<long long>(moved->rows), moved->tables, static_cast<long long>(moved->blobs),
-              static_cast<long long>(moved->new_rows), static_cast<long long>(moved->new_blobs));
+              count(rows.rows), driftlab::server::moved_table_count(), count(moved->blobs),
+              count(rows.added + rows.changed), count(moved->new_blobs));
   return 0;
 }
 
@@ -193,7 +201,7 @@ int main(int argc, char** argv) {
   migrate->add_option("--to", move_to, "The other of the two; empty, or what an earlier run has moved so far")
       ->required();
   bool ahead = false;
-  migrate->add_flag("--ahead", ahead, "Copy the recordings alone, while the daemons of --from go on");
+  migrate->add_flag("--ahead", ahead, "Copy what is there, while the daemons of --from go on; again: what has changed");
   const CLI::App* const worker = app.add_subcommand(
       "worker", "Work on the jobs of --store, without an API; --listen answers /healthz, /readyz and /metrics");
   bool json = false;
@@ -231,8 +239,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (migrate->parsed()) {
-    return tell_moved(ahead ? driftlab::server::move_recordings_ahead(settings, move_from, move_to)
-                            : driftlab::server::move_store(settings, move_from, move_to));
+    return tell_moved(ahead ? driftlab::server::move_ahead(settings, move_from, move_to)
+                            : driftlab::server::move_store(settings, move_from, move_to),
+                      ahead);
   }
   if (check->parsed()) {
     return tell("checked", driftlab::server::check_data(settings.data));

@@ -121,12 +121,19 @@ void AheadList::keep(const std::vector<std::string>& there) {
   hashes_ = std::move(kept);
 }
 
-Status AheadList::add(const std::string& sha256) {
+Status AheadList::begin() {
   if (!begun_) {
     if (Status begun = write_secret_file(path_, what_ + "\n"); !begun) {
       return begun;
     }
     begun_ = true;
+  }
+  return {};
+}
+
+Status AheadList::add(const std::string& sha256) {
+  if (Status begun = begin(); !begun) {
+    return begun;
   }
   std::ofstream stream(path_, std::ios::app);
   stream << sha256 << "\n" << std::flush;

@@ -35,6 +35,10 @@ class AheadList {
  public:
   /// What a file at `path` holds of the move `what`; nothing where it is of another one.
   AheadList(std::filesystem::path path, std::string what);
+  /// Whether something was begun to be copied by that move.
+  [[nodiscard]] bool is_begun() const { return begun_; }
+  /// Makes the file, if it is not of this move. Errors: Io; DiskFull.
+  [[nodiscard]] Status begin();
   [[nodiscard]] bool holds(const std::string& sha256) const { return hashes_.contains(sha256); }
   /// Keeps only what is in `there`.
   void keep(const std::vector<std::string>& there);

@@ -1,40 +1,27 @@
 #pragma once
-/// Copies every row of one database of the store into another one, of the same engine or not.
+/// Brings one database of the store to what another one holds, of the same engine or not.
 ///
-/// Rows go in the order of their keys, 500 in a transaction, so that what the target holds is always a beginning of
-/// what the source holds: a run that was cut off is gone on with behind the last row. Tables come in an order in which
-/// nothing is named before it is there. Neither database may be in use meanwhile.
+/// Both are walked in the order of their keys. Rows that the target has and the source has not are removed, those that
+/// differ are given the values of the source, those that are missing are added: at first that is every row, later what
+/// has changed since, and what a run that was cut off had not copied yet. Five hundred rows go in a transaction. Every
+/// row is compared value by value: as it was found, or as it is read back; and so are the numbers of rows.
 #include "core/signal/result.hpp"
 #include "server/store/sql/database.hpp"
 
 #include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace driftlab::server {
 
-struct MovedTable {
-  std::string_view name;
-  std::string_view keys;  ///< columns of the primary key, with commas between them
-};
-
-/// Every table that both engines have, in the order of their copying.
-[[nodiscard]] const std::vector<MovedTable>& moved_tables();
-
 struct MovedRows {
-  std::int64_t rows = 0;      ///< in the source
-  std::int64_t new_rows = 0;  ///< copied now
+  std::int64_t rows = 0;  ///< in the source
+  std::int64_t added = 0;
+  std::int64_t changed = 0;
+  std::int64_t removed = 0;
 };
 
-/// Copies what is missing. Errors: those of the databases; Conflict (a table that `moved_tables` does not name, or
-/// whose columns differ).
+/// The source may be at work: all is read over one snapshot of it. The target may not. Errors: those of the databases;
+/// Conflict (a table that is not known here, or whose columns differ; rows that cannot take their new values, or are
+/// not what was written).
 [[nodiscard]] Result<MovedRows> copy_rows(Database& from, Database& to);
-
-/// Compares all tables by their number of rows and the SHA-256 of their values. Errors: Conflict (naming the table).
-[[nodiscard]] Status compare_rows(Database& from, Database& to);
-
-/// Whether no table has a row.
-[[nodiscard]] Result<bool> has_no_rows(Database& database);
 
 }  // namespace driftlab::server

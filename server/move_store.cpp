@@ -1,9 +1,10 @@
 #include "server/move_store.hpp"
 
 #include "server/move_blobs.hpp"
-#include "server/move_rows.hpp"
+#include "server/moved_tables.hpp"
 #include "server/open_store.hpp"
 #include "server/store/files.hpp"
+#include "server/store/sqlite/sqlite_reading.hpp"
 
 #include <chrono>
 #include <filesystem>
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAheadFile = "moved-ahead";
+constexpr std::string_view kSayFilledFrom = "UPDATE store_identity SET filled_from = ?1";
 
 bool is_database(const std::string& place) {
   return place.starts_with("postgresql://") || place.starts_with("postgres://");
@@ -45,8 +47,36 @@ Result<Side> open_side(const Settings& settings, const Clock& clock, bool beside
   return Side{std::move(*store), std::move(*blobs)};
 }
 
+/// A target is empty, or was filled by this move.
+Status check_target(Database& target, const AheadList& ahead) {
+  if (ahead.is_begun()) {
+    return {};
+  }
+  const auto empty = has_no_rows(target);
+  if (!empty) {
+    return fail(empty.error());
+  }
+  return *empty ? Status{}
+                : fail(ErrorCode::Conflict, "The target holds rows already; name an empty one.", {{"parameter", "to"}});
+}
+
+/// Says in a database what it is being filled from, or that this has ended. A directory has files for it.
+Status say_filled_from(const OpenedStore& target, const std::string& source) {
+  if (target.identity.empty()) {
+    return {};
+  }
+  return target.database
+      ->write(WriteKind::Fenced,
+              [&](Connection& connection) -> Result<int> {
+                Statement statement = connection.prepare(kSayFilledFrom);
+                statement.bind(source);
+                return statement.run().map([] { return 0; });
+              })
+      .map([](int) {});
+}
+
 /// The mark of a move that is under way, `WHERE\n`.
-Status begin_or_go_on(const fs::path& mark, const std::string& what, Database& target) {
+Status begin_or_go_on(const fs::path& mark, const std::string& what, Database& target, const AheadList& ahead) {
   std::ifstream stream(mark);
   std::string line;
   if (stream && std::getline(stream, line)) {
@@ -56,14 +86,21 @@ Status begin_or_go_on(const fs::path& mark, const std::string& what, Database& t
                                    " is being moved by another command: " + line + "; end that first.",
                                {{"path", mark.string()}});
   }
-  const auto empty = has_no_rows(target);
-  if (!empty) {
-    return fail(empty.error());
-  }
-  if (!*empty) {
-    return fail(ErrorCode::Conflict, "The target holds rows already; name an empty one.", {{"parameter", "to"}});
+  if (Status checked = check_target(target, ahead); !checked) {
+    return checked;
   }
   return write_secret_file(mark, what + "\n");
+}
+
+/// The mark goes last: as long as it is there the same command finds what is left to do.
+Status end_move(const OpenedStore& target, AheadList& ahead, const fs::path& mark) {
+  if (Status said = say_filled_from(target, ""); !said) {
+    return said;
+  }
+  if (Status forgotten = ahead.remove(); !forgotten) {
+    return forgotten;
+  }
+  return remove_file(mark);
 }
 
 /// What a move is from and to.
@@ -73,6 +110,7 @@ struct Plan {
   bool to_database = true;
   fs::path mark;
   std::string what;  ///< `to postgresql://... database`
+  std::string from;  ///< without a password
 };
 
 Result<Plan> plan(const Settings& settings, const std::string& from, const std::string& to) {
@@ -81,20 +119,56 @@ Result<Plan> plan(const Settings& settings, const std::string& from, const std::
                 "A lab is moved from a directory to postgresql://USER@HOST/DATABASE or back; name one of each.",
                 {{"parameter", "from"}});
   }
-  Plan made{settings, settings, is_database(to), {}, {}};
+  Plan made{settings, settings, is_database(to), {}, {}, is_database(from) ? without_password(from) : from};
   made.of_directory.store.clear();
   made.of_directory.blobs.clear();
   made.of_directory.data = made.to_database ? from : to;
   made.of_directory.is_moving = true;
   made.of_database.store = made.to_database ? to : from;
   made.of_database.serves_api = true;
+  made.of_database.is_moving = true;
   made.mark = made.of_directory.data / kMovingFile;
   made.what = (made.to_database ? "to " : "from ") + without_password(made.of_database.store) + " " + settings.blobs;
   return made;
 }
 
-AheadList ahead_list(const Plan& plan, const Side& target) {
-  return {plan.of_directory.data / kAheadFile, plan.what + " " + target.store.identity};
+/// `identity`: of the database, so that another one of the same address is not taken for it.
+AheadList ahead_list(const Plan& plan, const std::string& identity) {
+  return {plan.of_directory.data / kAheadFile, plan.what + " " + identity};
+}
+
+/// A source whose daemons go on.
+class SourceAtWork {
+ public:
+  /// A directory, by its files.
+  SourceAtWork(fs::path directory, std::unique_ptr<Database> reading)
+      : directory_(std::move(directory)), reading_(std::move(reading)) {}
+  explicit SourceAtWork(Side side) : side_(std::move(side)) {}
+
+  [[nodiscard]] Database& database() const { return side_ ? *side_->store.database : *reading_; }
+  [[nodiscard]] std::string identity() const { return side_ ? side_->store.identity : ""; }
+  [[nodiscard]] BlobFiles files() const { return side_ ? files_of(*side_->blobs) : files_in(directory_); }
+  [[nodiscard]] Result<std::vector<std::string>> hashes() const {
+    return side_ ? side_->store.store->blob_hashes() : hashes_in(directory_);
+  }
+
+ private:
+  fs::path directory_;
+  std::unique_ptr<Database> reading_;
+  std::optional<Side> side_;
+};
+
+Result<SourceAtWork> open_at_work(const Plan& plan, const Clock& clock) {
+  if (!plan.to_database) {
+    return open_side(plan.of_database, clock, true).map([](Side side) { return SourceAtWork(std::move(side)); });
+  }
+  const fs::path& data = plan.of_directory.data;
+  if (!is_there(data / kSqliteFile)) {
+    return fail(ErrorCode::NotFound, "There is no database in " + data.string() + ".", {{"parameter", "from"}});
+  }
+  return open_sqlite_reading(data / kSqliteFile).map([&](std::unique_ptr<Database> reading) {
+    return SourceAtWork(data, std::move(reading));
+  });
 }
 
 /// Copies what of `hashes` is not there; `passes_over_damaged`: what is damaged or gone at its source is not missed.
@@ -129,7 +203,7 @@ Status copy_blobs(const std::vector<std::string>& hashes, const BlobFiles& from,
 
 }  // namespace
 
-Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::string& from, const std::string& to) {
+Result<MovedStore> move_ahead(const Settings& settings, const std::string& from, const std::string& to) {
   const auto planned = plan(settings, from, to);
   if (!planned) {
     return fail(planned.error());
@@ -139,39 +213,46 @@ Result<MovedStore> move_recordings_ahead(const Settings& settings, const std::st
                 {{"parameter", "from"}});
   }
   const SystemClock clock;
-  const fs::path& data = planned->of_directory.data;
-  if (planned->to_database && !is_there(data / kSqliteFile)) {
-    return fail(ErrorCode::NotFound, "There is no database in " + data.string() + ".", {{"parameter", "from"}});
-  }
-  std::optional<Side> source;
-  if (!planned->to_database) {
-    auto opened = open_side(planned->of_database, clock, true);
-    if (!opened) {
-      return fail(opened.error());
-    }
-    source = std::move(*opened);
+  const auto source = open_at_work(*planned, clock);
+  if (!source) {
+    return fail(source.error());
   }
   auto target = open_side(planned->to_database ? planned->of_database : planned->of_directory, clock);
   if (!target) {
     return fail(target.error());
   }
-  const auto empty = has_no_rows(*target->store.database);
-  if (!empty || !*empty) {
-    return !empty
-               ? Result<MovedStore>(fail(empty.error()))
-               : fail(ErrorCode::Conflict, "The target holds rows already; name an empty one.", {{"parameter", "to"}});
+  AheadList ahead = ahead_list(*planned, planned->to_database ? target->store.identity : source->identity());
+  Status ready = check_target(*target->store.database, ahead);
+  if (ready) {
+    ready = ahead.begin();
   }
-  const auto hashes = source ? source->store.store->blob_hashes() : hashes_in(data);
+  if (ready) {
+    ready = say_filled_from(target->store, planned->from);
+  }
+  if (!ready) {
+    return fail(ready.error());
+  }
+  const auto hashes = source->hashes();
   if (!hashes) {
     return fail(hashes.error());
   }
   MovedStore moved;
-  AheadList ahead = ahead_list(*planned, *target);
-  const BlobFiles files = source ? files_of(*source->blobs) : files_in(data);
-  if (Status copied = copy_blobs(*hashes, files, *target->blobs, ahead, true, moved); !copied) {
+  if (Status copied = copy_blobs(*hashes, source->files(), *target->blobs, ahead, true, moved); !copied) {
     return fail(copied.error());
   }
+  const auto rows = copy_rows(source->database(), *target->store.database);
+  if (!rows && rows.error().code != ErrorCode::Conflict) {
+    return fail(rows.error());
+  }
+  moved.rows = rows ? *rows : MovedRows{};
+  moved.rows_left = rows ? "" : rows.error().message;
   return moved;
+}
+
+bool is_filled_ahead(const fs::path& data) {
+  std::ifstream stream(data / kAheadFile);
+  std::string line;
+  return stream && std::getline(stream, line) && line.starts_with("from ");
 }
 
 Result<MovedStore> move_store(const Settings& settings, const std::string& from, const std::string& to) {
@@ -190,16 +271,18 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   }
   Side& source = planned->to_database ? *directory : *database;
   Side& target = planned->to_database ? *database : *directory;
-  if (Status begun = begin_or_go_on(planned->mark, planned->what, *target.store.database); !begun) {
+  AheadList ahead = ahead_list(*planned, database->store.identity);
+  if (Status begun = begin_or_go_on(planned->mark, planned->what, *target.store.database, ahead); !begun) {
     return fail(begun.error());
+  }
+  if (Status said = say_filled_from(target.store, planned->from); !said) {
+    return fail(said.error());
   }
   const auto hashes = source.store.store->blob_hashes();
   if (!hashes) {
     return fail(hashes.error());
   }
   MovedStore moved;
-  moved.tables = static_cast<int>(moved_tables().size());
-  AheadList ahead = ahead_list(*planned, target);
   if (Status copied = copy_blobs(*hashes, files_of(*source.blobs), *target.blobs, ahead, false, moved); !copied) {
     return fail(copied.error());
   }
@@ -207,15 +290,8 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   if (!rows) {
     return fail(rows.error());
   }
-  moved.rows = rows->rows;
-  moved.new_rows = rows->new_rows;
-  if (Status same = compare_rows(*source.store.database, *target.store.database); !same) {
-    return fail(same.error());
-  }
-  if (Status forgotten = ahead.remove(); !forgotten) {
-    return fail(forgotten.error());
-  }
-  if (Status ended = remove_file(planned->mark); !ended) {
+  moved.rows = *rows;
+  if (Status ended = end_move(target.store, ahead, planned->mark); !ended) {
     return fail(ended.error());
   }
   return moved;

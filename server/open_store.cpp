@@ -33,6 +33,12 @@ Result<OpenedStore> open_sqlite(const Settings& settings, const Clock& clock, Au
                     " is being moved; let `driftlabd migrate` end, or remove the file `moving` from the source.",
                 {{"parameter", "data"}});
   }
+  if (is_filled_ahead(settings.data) && !settings.is_moving) {
+    return fail(ErrorCode::Conflict,
+                "The store in " + settings.data.string() +
+                    " is being filled by `driftlabd migrate --ahead`; let the move end, or remove the directory.",
+                {{"parameter", "data"}});
+  }
   SqliteOptions options;
   options.audited = std::move(audited);
   auto store = open_sqlite_store(settings.data, clock, std::move(options));
@@ -67,6 +73,12 @@ Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audite
     return fail(store.error());
   }
   const PostgresFacts& facts = (*store)->facts();
+  if (!facts.filled_from.empty() && !settings.is_moving) {
+    return fail(ErrorCode::Conflict,
+                "The database is being filled by `driftlabd migrate` (" + facts.filled_from +
+                    "); let the move end, or make the database anew.",
+                {{"parameter", "store"}});
+  }
   Json told{{"postgresql", facts.version},
             {"database", facts.database},
             {"schema_before", facts.schema_before},

@@ -1,11 +1,14 @@
 """`driftlabd migrate`: a lab goes from SQLite to PostgreSQL and back with everything, also where it is cut off on the way."""
 from __future__ import annotations
 
+import itertools
 import os
+import re
 import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -50,8 +53,9 @@ class Migrate(unittest.TestCase):
 
     @staticmethod
     def everything(daemon: Daemon) -> dict[str, Any]:
-        for job in daemon.items("/v1/jobs"):
-            daemon.finished(job["id"])  # a pooling follows the last characterisation by itself
+        while waiting := [job["id"] for job in daemon.items("/v1/jobs") if job["state"] in ("queued", "running")]:
+            for job in waiting:
+                daemon.finished(job)  # a pooling follows the last characterisation by itself
         said: dict[str, Any] = {target: daemon.items(target) for target in LISTS}
         for recording in said["/v1/recordings"]:
             said[recording["id"]] = daemon.get(f"/v1/recordings/{recording['id']}/content").body
@@ -103,7 +107,16 @@ class Migrate(unittest.TestCase):
                     self.assertEqual(daemon.terminate(), 0)
                 self.assertEqual(subprocess.run([daemons.PROGRAM, "check", "--data", str(back)], capture_output=True).returncode, 0)
 
-    def test_recordings_go_ahead_while_the_daemons_work(self) -> None:
+    def ahead(self, source: Path | str, target: Path | str, *more: str) -> tuple[int, ...]:
+        """Recordings, new ones; rows, new, changed and gone ones."""
+        ran = self.migrate(source, target, *more, "--ahead")
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        said = re.fullmatch(r"copied ahead: (\d+) recordings, (\d+) of them in this run; (\d+) rows, (\d+) new, (\d+) changed, (\d+) gone\n",
+                            ran.stdout)
+        assert said is not None, ran.stdout
+        return tuple(int(number) for number in said.groups())
+
+    def test_a_lab_goes_ahead_while_its_daemons_work(self) -> None:
         self.fill()
         files = sorted(path for path in (self.data / "blobs").rglob("*") if path.is_file())
         local, back = self.folder / "local", self.folder / "back"
@@ -111,15 +124,32 @@ class Migrate(unittest.TestCase):
         with Daemon(self.data) as daemon:
             daemon.token = self.token
             self.assertIn("uses the directory", self.migrate(self.data, self.store, *more).stderr, "the move itself needs it alone")
-            ran = self.migrate(self.data, self.store, *more, "--ahead")
-            self.assertEqual((ran.returncode, ran.stdout), (0, "copied ahead: 3 recordings, 3 of them in this run\n"), ran.stderr)
+            recordings, copied, rows, new, changed, gone = self.ahead(self.data, self.store, *more)
+            self.assertEqual((recordings, copied, changed, gone), (3, 3, 0, 0))
+            self.assertEqual(rows, new)
+            self.assertGreater(rows, 50)
+            self.assertIn("is being filled", start(self.folder / "early", self.store, "--blobs", "database").stderr, "a part of a lab is none")
             made = daemon.upload(samples.gyro_csv(4096, seed=7), rate_hz=100, columns=samples.GYRO_Z, condition="static")
             self.assertEqual(made.status, 201, made.describe())
-            self.assertIn("4 recordings, 1 of them", self.migrate(self.data, self.store, *more, "--ahead").stdout)
+            first = daemon.items("/v1/recordings")[0]["id"]
+            labelled = daemon.request("PATCH", f"/v1/recordings/{first}", {"labels": {"bench": "7"}}, {"If-Match": "*"})
+            self.assertEqual(labelled.status, 200, labelled.describe())
+            device = daemon.get("/v1/devices").json["items"][-1]["id"]
+            self.assertEqual(daemon.post("/v1/devices", {"name": "soon gone"}).status, 201)
+            recordings, copied, rows, new, changed, gone = self.ahead(self.data, self.store, *more)
+            self.assertEqual((recordings, copied, gone), (4, 1, 0))
+            self.assertGreaterEqual(new, 3, "a recording, its bytes, a device, what the log says of them")
+            self.assertGreaterEqual(changed, 1, "labels")
+            soon = next(each["id"] for each in daemon.items("/v1/devices") if each["name"] == "soon gone")
+            self.assertNotEqual(soon, device)
+            self.assertEqual(daemon.request("DELETE", f"/v1/devices/{soon}", None, {"If-Match": "*"}).status, 204)
+            self.assertGreaterEqual(self.ahead(self.data, self.store, *more)[5], 1)
             self.assertEqual(daemon.upload(samples.gyro_csv(4096, seed=8), rate_hz=100, columns=samples.GYRO_Z).status, 201)
             before = self.everything(daemon)
             self.assertEqual(daemon.terminate(), 0)
-        self.assertRegex(self.moved(self.data, self.store, *more), r"and 5 recordings, \d+ and 1 of them")
+        said = re.search(r"moved: (\d+) rows of \d+ tables and 5 recordings, (\d+) and 1 of them", self.moved(self.data, self.store, *more))
+        assert said is not None
+        self.assertLess(int(said[2]), 25, f"of {said[1]} rows; the rest was there")
         self.assertFalse((self.data / "moved-ahead").exists())
         self.assertLessEqual(set(files), set((self.data / "blobs").rglob("*")), "the source stays as it is")
         with Daemon(local, arguments=("--store", self.store, "--blobs", "database")) as daemon:
@@ -127,18 +157,70 @@ class Migrate(unittest.TestCase):
             self.assertEqual(self.everything(daemon), before)
             third = ("--blobs", "database", "--data", str(self.folder / "third"))
             self.assertIn("stop them", self.migrate(self.data, self.store, *third, "--ahead").stderr, "a target that is at work")
-            ran = self.migrate(self.store, back, "--blobs", "database", "--data", str(self.folder / "copies"), "--ahead")
-            self.assertIn("5 recordings, 5 of them", ran.stdout, ran.stderr)
+            copies = ("--blobs", "database", "--data", str(self.folder / "copies"))
+            self.assertEqual(self.ahead(self.store, back, *copies)[:2], (5, 5))
+            self.assertIn("is being filled", start(back, "").stderr)
+            self.assertEqual(daemon.post("/v1/devices", {"name": "late"}).status, 201)
+            self.assertEqual(self.ahead(self.store, back, *copies)[:2], (5, 0))
+            before = self.everything(daemon)
             self.assertEqual(daemon.terminate(), 0)
         self.assertRegex(self.moved(self.store, back, *more), r"and 5 recordings, \d+ and 0 of them")
         with Daemon(back) as daemon:
             daemon.token = self.token
             self.assertEqual(self.everything(daemon), before)
 
+    def test_nothing_is_missing_of_what_was_uploaded_while_it_went_ahead(self) -> None:
+        """Clients upload, label, characterise and remove all the time; runs go ahead beside them, one is killed, then the lab is moved."""
+        self.fill()
+        more = ("--blobs", "database", "--data", str(self.folder / "local"))
+        with Daemon(self.data) as daemon:
+            daemon.token = self.token
+            ended = threading.Event()
+            kept: list[str] = []
+            failed: list[str] = []
+
+            def work() -> None:
+                for seed in itertools.count(100):
+                    if ended.is_set():
+                        return
+                    made = daemon.upload(samples.gyro_csv(1024, seed=seed), rate_hz=100, columns=samples.GYRO_Z, condition="static")
+                    if made.status != 201:
+                        failed.append(made.describe())
+                        return
+                    recording = made.json["id"]
+                    if seed % 3 == 0:
+                        daemon.request("DELETE", f"/v1/recordings/{recording}", None, {"If-Match": "*"})
+                        continue
+                    daemon.request("PATCH", f"/v1/recordings/{recording}", {"labels": {"seed": str(seed)}}, {"If-Match": "*"})
+                    daemon.characterise(recording, models=["WN"])
+                    kept.append(recording)
+
+            client = threading.Thread(target=work)
+            client.start()
+            for _ in range(3):
+                self.ahead(self.data, self.store, *more)
+            process = subprocess.Popen([daemons.PROGRAM, "migrate", "--from", str(self.data), "--to", self.store, *more, "--ahead"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(0.1)
+            process.kill()
+            process.wait()
+            self.ahead(self.data, self.store, *more)
+            ended.set()
+            client.join()
+            self.assertEqual(failed, [])
+            self.assertGreater(len(kept), 3)
+            before = self.everything(daemon)
+            self.assertEqual(daemon.terminate(), 0)
+        self.moved(self.data, self.store, *more)
+        with Daemon(self.folder / "local", arguments=("--store", self.store, "--blobs", "database")) as daemon:
+            daemon.token = self.token
+            self.assertLessEqual(set(kept), {each["id"] for each in daemon.items("/v1/recordings")})
+            self.assertEqual(self.everything(daemon), before)
+
     def test_what_was_copied_ahead_to_another_target_is_not_believed(self) -> None:
         self.fill()
         more = ("--blobs", "database", "--data", str(self.folder / "local"))
-        self.assertIn("3 of them", self.migrate(self.data, self.store, *more, "--ahead").stdout)
+        self.assertEqual(self.ahead(self.data, self.store, *more)[:2], (3, 3))
         cluster = postgres.cluster()
         schema = cluster.schema_of(self.folder)
         cluster.sql(f"DROP SCHEMA {schema} CASCADE; CREATE SCHEMA {schema}")

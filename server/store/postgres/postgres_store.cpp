@@ -110,12 +110,17 @@ Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& ur
       return fail(migrated.error());
     }
     const auto identity = (*connection)->query_text("SELECT word FROM store_identity");
-    if (!identity) {
-      return fail(identity.error());
+    const auto filled_from = (*connection)->query_text("SELECT filled_from FROM store_identity");
+    if (!identity || !filled_from) {
+      return fail(identity ? filled_from.error() : identity.error());
     }
     const int version = (*connection)->server_version();
-    facts = {std::to_string(version / 10000) + "." + std::to_string(version % 10000), (*connection)->name(),
-             migrated->from, migrated->to, identity->value_or("")};
+    facts = {std::to_string(version / 10000) + "." + std::to_string(version % 10000),
+             (*connection)->name(),
+             migrated->from,
+             migrated->to,
+             identity->value_or(""),
+             filled_from->value_or("")};
   }
   const ConnectionPool::Opener open_checked = [open, migrations] { return open_of_schema(open, migrations); };
   std::unique_ptr<Coordination> coordination;

@@ -39,11 +39,12 @@ struct PostgresOptions {
 
 /// What opening found, for the log.
 struct PostgresFacts {
-  std::string version;    ///< of the server: "15.18"
-  std::string database;   ///< `"driftlab" on db.example:5432`
-  int schema_before = 0;  ///< 0: the tables were made now
-  int schema = 0;         ///< of the database now, which may be a newer one
-  std::string identity;   ///< a word that no other database has
+  std::string version;      ///< of the server: "15.18"
+  std::string database;     ///< `"driftlab" on db.example:5432`
+  int schema_before = 0;    ///< 0: the tables were made now
+  int schema = 0;           ///< of the database now, which may be a newer one
+  std::string identity;     ///< a word that no other database has
+  std::string filled_from;  ///< what is being moved into it; empty: nothing
 };
 
 class PostgresStore final : public SqlStore {

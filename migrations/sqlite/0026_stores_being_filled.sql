@@ -1,0 +1,2 @@
+-- Programs of schema 21 and later may work beside it.
+-- A directory that is being filled has a file that says so: nothing to do here.
