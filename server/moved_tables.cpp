@@ -44,6 +44,7 @@ constexpr std::array kKnownTables{
     KnownTable{"job_recordings", "job_id,recording_id"},
 };
 
+// Tables that are of one engine alone, or that triggers keep, are not moved.
 // The texts of this file are put together from names of tables and columns that the catalogue of the database gives and
 // this list confirms; values are bound as everywhere.
 constexpr EngineTexts kColumns{
@@ -53,9 +54,9 @@ constexpr EngineTexts kColumns{
     "column_name COLLATE \"C\""};
 constexpr EngineTexts kTables{
     "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT IN "
-    "('schema_migrations', 'commits')",
+    "('schema_migrations', 'commits', 'recordings_without_result')",
     "SELECT tablename::TEXT FROM pg_catalog.pg_tables WHERE schemaname = current_schema() AND tablename NOT IN "
-    "('schema_migrations', 'store_identity', 'stored_files', 'stored_file_parts')"};
+    "('schema_migrations', 'store_identity', 'stored_files', 'stored_file_parts', 'recordings_without_result')"};
 constexpr std::string_view kSetSequence = "SELECT setval(pg_get_serial_sequence(?1, 'sequence'), greatest(1, ?2))";
 
 std::vector<std::string> split_names(std::string_view names) {

@@ -147,6 +147,7 @@ class VisibleStore final : public Store {
     return whole_.request_cancel(id);
   }
   Result<int> rescue_expired() override { return whole_.rescue_expired(); }
+  Result<int> settle_recordings() override { return whole_.settle_recordings(); }
   Result<int> end_all_leases() override { return whole_.end_all_leases(); }
   Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence, int limit) override {
     if (auto seen = see_job(job_id); !seen) {

@@ -98,6 +98,7 @@ void Maintenance::stop() {
 
 void Maintenance::run() {
   tidied_at_ = std::chrono::steady_clock::now() - std::chrono::microseconds(options_.tidy_micros);
+  settled_at_ = std::chrono::steady_clock::now() - std::chrono::microseconds(options_.settle_micros);
   std::unique_lock<std::mutex> guard(mutex_);
   while (!stopping_) {
     guard.unlock();
@@ -111,6 +112,10 @@ void Maintenance::turn() {
   const bool mine = !options_.is_mine || options_.is_mine();
   if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
     rescued_();
+  }
+  if (mine && std::chrono::steady_clock::now() - settled_at_ >= std::chrono::microseconds(options_.settle_micros)) {
+    settled_at_ = std::chrono::steady_clock::now();
+    (void)store_.settle_recordings();
   }
   const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
   if (full) {

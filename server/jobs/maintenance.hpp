@@ -16,6 +16,7 @@ namespace driftlab::server {
 
 struct MaintenanceOptions {
   std::int64_t rescue_micros = 5'000'000;    ///< between looks for expired leases
+  std::int64_t settle_micros = 60'000'000;   ///< between looks for recordings that have a result by now
   std::int64_t tidy_micros = 3'600'000'000;  ///< between removals of old replies and of files without rows
   Budgets budgets = {};
   /// Whether this process does it, of several on one store; empty: it is the only one.
@@ -60,6 +61,7 @@ class Maintenance {
   std::mutex mutex_;
   std::condition_variable stopped_;
   bool stopping_ = false;
+  std::chrono::steady_clock::time_point settled_at_;
   std::chrono::steady_clock::time_point tidied_at_;
   std::thread thread_;
 };

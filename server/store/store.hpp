@@ -382,6 +382,9 @@ class Store {
   [[nodiscard]] virtual Result<std::string> artefact(std::string_view job_id, std::string_view name) = 0;
 
   // ---- idempotency
+  /// Forgets of recordings without a result those that have one by now, so that the others are found soon. How many.
+  [[nodiscard]] virtual Result<int> settle_recordings() = 0;
+
   /// The stored reply for a key younger than 24 h.
   [[nodiscard]] virtual Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) = 0;
   [[nodiscard]] virtual Status remember_reply(const IdempotentReply& reply) = 0;

@@ -24,6 +24,11 @@ constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM r
 constexpr std::string_view kByDeviceAndBlob =
     "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
 constexpr std::string_view kHasResult = "EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings.id)";
+/// Few of many, where a look for results would read every recording (migration 0027).
+constexpr std::string_view kMayHaveNoResult = "id IN (SELECT recording_id FROM recordings_without_result)";
+constexpr std::string_view kSettle =
+    "DELETE FROM recordings_without_result WHERE EXISTS (SELECT 1 FROM channel_results WHERE recording_id = "
+    "recordings_without_result.recording_id)";
 constexpr std::string_view kUsageOf =
     "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
     "FROM recordings "
@@ -230,9 +235,16 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   query.holds("name || ' ' || file_name || ' ' || condition || ' ' || id", filter.text);
   query.made_since("rec", filter.since);
   if (filter.has_result) {
+    if (!*filter.has_result) {
+      query.where(kMayHaveNoResult);
+    }
     query.where((*filter.has_result ? "" : "NOT ") + std::string(kHasResult));
   }
   return query.visible(page, "device_id").read_page(connection, page, read_sound_recording);
+}
+
+Result<int> settle_recordings(Connection& connection) {
+  return connection.prepare(kSettle).run().map([&] { return connection.changes(); });
 }
 
 Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,

@@ -289,6 +289,10 @@ Result<int> SqlStore::rescue_expired() {
   });
 }
 
+Result<int> SqlStore::settle_recordings() {
+  return database_->write(WriteKind::Serial, [](Connection& c) { return tables::settle_recordings(c); });
+}
+
 Result<int> SqlStore::end_all_leases() {
   return database_->write(WriteKind::Serial,
                           [&](Connection& c) { return tables::end_leases(c, std::nullopt, now(c)); });

@@ -104,6 +104,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<LeaseStatus> release(const Lease& lease) override;
   [[nodiscard]] Result<Job> request_cancel(std::string_view id) override;
   [[nodiscard]] Result<int> rescue_expired() override;
+  [[nodiscard]] Result<int> settle_recordings() override;
   [[nodiscard]] Result<int> end_all_leases() override;
   [[nodiscard]] Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence,
                                                            int limit) override;

@@ -231,6 +231,7 @@ class FilteredQuery {
                                               const std::optional<Visibility>& visible);
 [[nodiscard]] Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std::string>& device_ids,
                                                 const std::optional<Visibility>& visible);
+[[nodiscard]] Result<int> settle_recordings(Connection& connection);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
 [[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,

@@ -127,7 +127,13 @@ TEST_P(ListStore, RecordingsAreSoughtByTextTimeAndResult) {
   const Job job = claim_one(store());
   ASSERT_TRUE(store().succeed(lease_of(job), results_for(job, table))->held);
   EXPECT_EQ(with([](RecordingFilter& f) { f.has_result = true; }), Ids{table.id});
-  EXPECT_EQ(with([](RecordingFilter& f) { f.has_result = false; }), Ids{still.id});
+  const auto without = [](RecordingFilter& f) { f.has_result = false; };
+  EXPECT_EQ(with(without), Ids{still.id}) << "before the list has been settled";
+  EXPECT_EQ(*store().settle_recordings(), 1) << "the one that has a result by now";
+  EXPECT_EQ(*store().settle_recordings(), 0);
+  EXPECT_EQ(with(without), Ids{still.id});
+  const Recording later = add_named(store(), device, "", "later.csv");
+  EXPECT_EQ(with(without).size(), 2U) << later.id;
 }
 
 TEST_P(ListStore, JobsAreSoughtByDeviceScenarioAndTimeAndARecordingNamesItsNewest) {

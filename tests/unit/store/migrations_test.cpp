@@ -269,6 +269,43 @@ TEST(Migrations, RecordingsOfAnEarlierReleaseHaveTheirNamesAndJobs) {
   EXPECT_EQ((*now)->recording("rec_1")->latest_job, "job_1");
 }
 
+TEST(Migrations, RecordingsOfAnEarlierReleaseAreListedByWhetherTheyHaveAResult) {
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 26);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  const auto file = directory.path() / "driftlab.db";
+  const auto run = [&](const std::string& sql) {
+    const auto connection = SqliteConnection::open(file, Access::ReadWrite);
+    const Status ran = (*connection)->execute(sql);
+    EXPECT_TRUE(ran) << ran.error().message;
+  };
+  run("INSERT INTO devices (id, name, model, imu, serial, labels_json, revision, created_at, updated_at) VALUES "
+      "('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+      "INSERT INTO blobs (sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at) VALUES "
+      "('" +
+      hash_of("a") +
+      "', 1, 'csv', 'none', 1, '[]', '[]', 0);"
+      "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, "
+      "created_at, updated_at) VALUES ('rec_1', 'dev_1', '" +
+      hash_of("a") +
+      "', 1, '{}', 'static', '{}', 0, 0);"
+      "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
+      "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
+      "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
+      "condition, document_json, settings_json, created_at) VALUES ('res_1', 'job_1', 'dev_1', 'rec_1', 1, 'gyro_z', "
+      "'angular_rate', 'z', 'static', '{}', '{}', 0)");
+  const auto listed = [&] {
+    const auto connection = SqliteConnection::open(file, Access::ReadOnly);
+    return (*connection)->query_integer("SELECT count(*) FROM recordings_without_result").value().value();
+  };
+  ASSERT_TRUE(open_with(directory.path(), embedded_migrations()));
+  EXPECT_EQ(listed(), 0) << "it has a result";
+  run("DELETE FROM channel_results");
+  EXPECT_EQ(listed(), 1) << "it has none any more";
+  run("PRAGMA foreign_keys = ON; DELETE FROM jobs; DELETE FROM recordings");
+  EXPECT_EQ(listed(), 0);
+}
+
 TEST(Migrations, AnchorsOfAnEarlierReleaseKeptNoSettings) {
   const TemporaryDirectory directory;
   const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 11);
