@@ -243,6 +243,9 @@ class Store {
   [[nodiscard]] virtual Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
+  /// Takes some of the recordings that have a result by now off the list of those without one, so that the others are
+  /// found soon. How many.
+  [[nodiscard]] virtual Result<int> settle_recordings() = 0;
   /// Of the devices of those ids that are there, at one moment: in one read of each table for all of them.
   [[nodiscard]] virtual Result<DeviceOverviews> overviews(const std::vector<std::string>& device_ids,
                                                           const std::optional<Visibility>& visible = std::nullopt) = 0;
@@ -382,9 +385,6 @@ class Store {
   [[nodiscard]] virtual Result<std::string> artefact(std::string_view job_id, std::string_view name) = 0;
 
   // ---- idempotency
-  /// Forgets of recordings without a result those that have one by now, so that the others are found soon. How many.
-  [[nodiscard]] virtual Result<int> settle_recordings() = 0;
-
   /// The stored reply for a key younger than 24 h.
   [[nodiscard]] virtual Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) = 0;
   [[nodiscard]] virtual Status remember_reply(const IdempotentReply& reply) = 0;

@@ -26,9 +26,11 @@ constexpr std::string_view kByDeviceAndBlob =
 constexpr std::string_view kHasResult = "EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings.id)";
 /// Few of many, where a look for results would read every recording (migration 0027).
 constexpr std::string_view kMayHaveNoResult = "id IN (SELECT recording_id FROM recordings_without_result)";
+/// At most so many at once, for nobody else writes to SQLite meanwhile.
 constexpr std::string_view kSettle =
-    "DELETE FROM recordings_without_result WHERE EXISTS (SELECT 1 FROM channel_results WHERE recording_id = "
-    "recordings_without_result.recording_id)";
+    "DELETE FROM recordings_without_result WHERE recording_id IN (SELECT recording_id FROM recordings_without_result "
+    "WHERE EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings_without_result.recording_id) "
+    "LIMIT 10000)";
 constexpr std::string_view kUsageOf =
     "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
     "FROM recordings "

@@ -290,7 +290,7 @@ Result<int> SqlStore::rescue_expired() {
 }
 
 Result<int> SqlStore::settle_recordings() {
-  return database_->write(WriteKind::Serial, [](Connection& c) { return tables::settle_recordings(c); });
+  return database_->write(WriteKind::Fenced, [](Connection& c) { return tables::settle_recordings(c); });
 }
 
 Result<int> SqlStore::end_all_leases() {
