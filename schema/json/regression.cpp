@@ -140,7 +140,7 @@ Json regression_tau0_json(const regression::Tau0& tau0) {
 Json regression_limits_json(const regression::EventLimits& limits) {
   Json document = Json::object();
   for (const LimitMember& member : limit_members()) {
-    document[member.name] = number(limits.*member.limit / member.unit);
+    document[member.name] = number_in(limits.*member.limit, member.unit);
   }
   document["findings"] = limits.findings;
   return document;

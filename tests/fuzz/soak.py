@@ -58,7 +58,7 @@ def main() -> int:
     parser.add_argument("--only", default="")
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
-    only = arguments.only.split(",")
+    only = [part for part in arguments.only.split(",") if part] or [""]
     programs = sorted(path for path in (arguments.build / "bin").glob("*_fuzz") if any(part in path.name for part in only))
     if not programs:
         parser.error(f"no fuzz targets in {arguments.build / 'bin'}")
