@@ -30,7 +30,8 @@ struct BlobFiles {
 /// Errors: Io (damaged where it is; not copied as it is); those of the files and of the store.
 [[nodiscard]] Status copy_blob(const BlobFiles& from, BlobStore& to, const std::string& sha256);
 
-/// The recordings that a target has already, as a file remembers them. The first line says of which move they are.
+/// What a target has already, as a file remembers it: its first line says of which move, the others name recordings.
+/// With the first line alone the move has begun, and the target may hold rows.
 class AheadList {
  public:
   /// What a file at `path` holds of the move `what`; nothing where it is of another one.

@@ -108,26 +108,22 @@ Status in_one(Database& database, const MovedTable& table, std::span<const Moved
       .map([](int) {});
 }
 
-Status in_parts(Database& database, const MovedTable& table, std::span<const MovedRow> rows, Change change) {
-  for (std::size_t i = 0; i < rows.size(); i += kInOneTransaction) {
-    const std::size_t count = std::min(kInOneTransaction, rows.size() - i);
-    if (Status done = in_one(database, table, rows.subspan(i, count), change); !done) {
-      return done;
+/// Rows that have to wait for others of theirs, whose values they take or which they are named by: as many rounds as
+/// that takes.
+Status in_rounds(Database& database, const MovedTable& table, std::vector<MovedRow> rows, Change change) {
+  const std::span<const MovedRow> all(rows);
+  std::size_t done = 0;
+  for (; done < rows.size(); done += kInOneTransaction) {
+    if (!in_one(database, table, all.subspan(done, std::min(kInOneTransaction, rows.size() - done)), change)) {
+      break;
     }
   }
-  return {};
-}
-
-/// Rows that take the values of others which change too have to wait for them: as many rounds as that takes.
-Status update_rows(Database& database, const MovedTable& table, std::vector<MovedRow> rows) {
-  if (in_parts(database, table, rows, &update_row)) {
-    return {};
-  }
+  rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(std::min(done, rows.size())));
   while (!rows.empty()) {
     std::vector<MovedRow> waiting;
     Status failed;
     for (MovedRow& row : rows) {
-      if (Status changed = in_one(database, table, {&row, 1}, &update_row); !changed) {
+      if (Status changed = in_one(database, table, {&row, 1}, change); !changed) {
         failed = std::move(changed);
         waiting.push_back(std::move(row));
       }
@@ -138,21 +134,6 @@ Status update_rows(Database& database, const MovedTable& table, std::vector<Move
     rows = std::move(waiting);
   }
   return {};
-}
-
-/// The rows of these keys, as far as they are there.
-Result<std::vector<MovedRow>> rows_of(Connection& snapshot, const MovedTable& table, std::span<const MovedRow> keys) {
-  std::vector<MovedRow> rows;
-  for (const MovedRow& key : keys) {
-    auto row = row_of(snapshot, table, key);
-    if (!row) {
-      return fail(row.error());
-    }
-    if (*row) {
-      rows.push_back(**std::move(row));
-    }
-  }
-  return rows;
 }
 
 Status check_same(const MovedTable& table, const Result<std::vector<MovedRow>>& there,
@@ -167,16 +148,24 @@ Status check_same(const MovedTable& table, const Result<std::vector<MovedRow>>& 
                                {{"table", std::string(table.name)}});
 }
 
-/// Reads rows back that were written.
-Status check_written(Database& target, const MovedTable& table, const std::vector<MovedRow>& rows) {
-  std::vector<MovedRow> keys;
-  keys.reserve(rows.size());
-  for (const MovedRow& row : rows) {
-    keys.push_back(table.key_of(row));
+/// Gives the target the rows of these keys as the source has them, and reads them back.
+Status bring(Connection& source, Database& target, const MovedTable& table, std::span<const MovedRow> keys,
+             Change change) {
+  for (std::size_t i = 0; i < keys.size(); i += kInOneTransaction) {
+    const auto part = keys.subspan(i, std::min(kInOneTransaction, keys.size() - i));
+    const auto rows = rows_of(source, table, part);
+    if (!rows) {
+      return fail(rows.error());
+    }
+    if (Status changed = in_rounds(target, table, *rows, change); !changed) {
+      return changed;
+    }
+    const auto read_back = target.read([&](Connection& there) { return rows_of(there, table, part); });
+    if (Status same = check_same(table, read_back, *rows); !same) {
+      return same;
+    }
   }
-  return rows.empty()
-             ? Status{}
-             : check_same(table, target.read([&](Connection& there) { return rows_of(there, table, keys); }), rows);
+  return {};
 }
 
 /// Adds what is behind the last row of the target; returns how many that were.
@@ -218,28 +207,18 @@ Status check_count(Database& target, const MovedTable& table, std::int64_t rows)
 
 Status mend_table(Connection& source, Database& target, const MovedTable& table, const Differences& differences,
                   MovedRows& moved) {
-  const auto changed = rows_of(source, table, differences.changed);
-  const auto missing = rows_of(source, table, differences.missing);
-  if (!changed || !missing) {
-    return fail(changed ? missing.error() : changed.error());
+  if (Status changed = bring(source, target, table, differences.changed, &update_row); !changed) {
+    return changed;
   }
-  moved.changed += static_cast<std::int64_t>(changed->size());
-  if (Status updated = update_rows(target, table, *changed); !updated) {
-    return updated;
-  }
-  if (Status inserted = in_parts(target, table, *missing, &insert_row); !inserted) {
-    return inserted;
-  }
-  for (const auto* const written : {&*changed, &*missing}) {
-    if (Status same = check_written(target, table, *written); !same) {
-      return same;
-    }
+  if (Status added = bring(source, target, table, differences.missing, &insert_row); !added) {
+    return added;
   }
   const auto appended = append_rows(source, target, table, differences.last);
   if (!appended) {
     return fail(appended.error());
   }
-  moved.added += static_cast<std::int64_t>(missing->size()) + *appended;
+  moved.changed += static_cast<std::int64_t>(differences.changed.size());
+  moved.added += static_cast<std::int64_t>(differences.missing.size()) + *appended;
   const std::int64_t rows = differences.rows + *appended;
   moved.rows += rows;
   if (Status counted = check_count(target, table, rows); !counted) {
@@ -252,6 +231,9 @@ Status mend_table(Connection& source, Database& target, const MovedTable& table,
 Result<std::vector<Differences>> all_differences(Connection& source, Database& target,
                                                  const std::vector<MovedTable>& tables) {
   return target.read([&](Connection& there) -> Result<std::vector<Differences>> {
+    if (Status patient = wait_within_snapshot(there); !patient) {
+      return fail(patient.error());
+    }
     std::vector<Differences> all;
     for (const MovedTable& table : tables) {
       auto found = differences_of(source, there, table);
@@ -264,17 +246,32 @@ Result<std::vector<Differences>> all_differences(Connection& source, Database& t
   });
 }
 
+/// What a log says is never taken back: where the target's has other rows, it is no beginning of this source.
+Status check_log(const MovedTable& table, const Differences& differences) {
+  return table.name != "audit" || (differences.gone.empty() && differences.changed.empty())
+             ? Status{}
+             : fail(ErrorCode::Conflict,
+                    "The audit log of the target is not that of the source; begin again with an empty target.",
+                    {{"table", std::string(table.name)}});
+}
+
 /// Rows go before those that they name, and come behind them.
 Result<MovedRows> copy_snapshot(Connection& source, Database& target, const std::vector<MovedTable>& tables) {
   const auto differences = all_differences(source, target, tables);
   if (!differences) {
     return fail(differences.error());
   }
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    if (Status checked = check_log(tables[i], (*differences)[i]); !checked) {
+      return fail(checked.error());
+    }
+  }
   MovedRows moved;
   for (std::size_t i = tables.size(); i-- > 0;) {
     const std::vector<MovedRow>& gone = (*differences)[i].gone;
     moved.removed += static_cast<std::int64_t>(gone.size());
-    if (Status removed = in_parts(target, tables[i], gone, &delete_row); !removed) {
+    // The newest first, for they may name older ones.
+    if (Status removed = in_rounds(target, tables[i], {gone.rbegin(), gone.rend()}, &delete_row); !removed) {
       return fail(removed.error());
     }
   }
@@ -288,12 +285,13 @@ Result<MovedRows> copy_snapshot(Connection& source, Database& target, const std:
 
 }  // namespace
 
-Result<MovedRows> copy_rows(Database& from, Database& to) {
-  const auto tables = moved_tables(from, to);
-  if (!tables) {
-    return fail(tables.error());
-  }
-  return from.read([&](Connection& source) { return copy_snapshot(source, to, *tables); });
+Result<MovedRows> copy_rows(Database& from, Database& to, const std::vector<MovedTable>& tables) {
+  return from.read([&](Connection& source) -> Result<MovedRows> {
+    if (Status patient = wait_within_snapshot(source); !patient) {
+      return fail(patient.error());
+    }
+    return copy_snapshot(source, to, tables);
+  });
 }
 
 }  // namespace driftlab::server

@@ -6,9 +6,11 @@
 /// has changed since, and what a run that was cut off had not copied yet. Five hundred rows go in a transaction. Every
 /// row is compared value by value: as it was found, or as it is read back; and so are the numbers of rows.
 #include "core/signal/result.hpp"
+#include "server/moved_tables.hpp"
 #include "server/store/sql/database.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace driftlab::server {
 
@@ -19,9 +21,9 @@ struct MovedRows {
   std::int64_t removed = 0;
 };
 
-/// The source may be at work: all is read over one snapshot of it. The target may not. Errors: those of the databases;
-/// Conflict (a table that is not known here, or whose columns differ; rows that cannot take their new values, or are
-/// not what was written).
-[[nodiscard]] Result<MovedRows> copy_rows(Database& from, Database& to);
+/// The source may be at work: all is read over one snapshot of it. The target may not. `tables` are those of both.
+/// Errors: those of the databases (Internal: rows that cannot take their new values); Conflict (rows that are not what
+/// was written; a target that holds the log of another store).
+[[nodiscard]] Result<MovedRows> copy_rows(Database& from, Database& to, const std::vector<MovedTable>& tables);
 
 }  // namespace driftlab::server

@@ -40,6 +40,12 @@ Result<Side> open_side(const Settings& settings, const Clock& clock, bool beside
     return fail(ErrorCode::Conflict, "Daemons or workers work with the database; stop them before it is moved.",
                 {{"parameter", "store"}});
   }
+  if (beside_others && store->others != nullptr) {
+    // Where nobody is there just now, daemons may come all the same.
+    if (Status admitted = store->others->admit_others(); !admitted) {
+      return fail(admitted.error());
+    }
+  }
   auto blobs = open_blobs(settings, *store);
   if (!blobs) {
     return fail(blobs.error());
@@ -103,6 +109,15 @@ Status end_move(const OpenedStore& target, AheadList& ahead, const fs::path& mar
   return remove_file(mark);
 }
 
+/// Whether a database is not being filled any more though the files of the move that `was_begun` are still there: it
+/// was cut off in its last steps, and daemons may have the database since.
+Result<bool> had_ended(const OpenedStore& target, bool was_begun) {
+  if (!was_begun || target.identity.empty() || !target.filled_from.empty()) {
+    return false;
+  }
+  return has_no_rows(*target.database).map([](bool empty) { return !empty; });
+}
+
 /// What a move is from and to.
 struct Plan {
   Settings of_directory;
@@ -126,8 +141,13 @@ Result<Plan> plan(const Settings& settings, const std::string& from, const std::
   made.of_directory.is_moving = true;
   made.of_database.store = made.to_database ? to : from;
   made.of_database.serves_api = true;
-  made.of_database.is_moving = true;
+  made.of_database.is_moving = made.to_database;  // what is a part of a lab is no source
   made.mark = made.of_directory.data / kMovingFile;
+  if (made.to_database && is_filled_ahead(made.of_directory.data)) {
+    return fail(ErrorCode::Conflict,
+                "The store in " + from + " is being filled itself; let that move end, or remove the directory.",
+                {{"parameter", "from"}});
+  }
   made.what = (made.to_database ? "to " : "from ") + without_password(made.of_database.store) + " " + settings.blobs;
   return made;
 }
@@ -240,12 +260,16 @@ Result<MovedStore> move_ahead(const Settings& settings, const std::string& from,
   if (Status copied = copy_blobs(*hashes, source->files(), *target->blobs, ahead, true, moved); !copied) {
     return fail(copied.error());
   }
-  const auto rows = copy_rows(source->database(), *target->store.database);
-  if (!rows && rows.error().code != ErrorCode::Conflict) {
+  const auto tables = moved_tables(source->database(), *target->store.database);
+  if (!tables) {
+    moved.rows_left = tables.error().message;
+    return tables.error().code == ErrorCode::Conflict ? Result<MovedStore>(moved) : fail(tables.error());
+  }
+  const auto rows = copy_rows(source->database(), *target->store.database, *tables);
+  if (!rows) {
     return fail(rows.error());
   }
-  moved.rows = rows ? *rows : MovedRows{};
-  moved.rows_left = rows ? "" : rows.error().message;
+  moved.rows = *rows;
   return moved;
 }
 
@@ -272,6 +296,16 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   Side& source = planned->to_database ? *directory : *database;
   Side& target = planned->to_database ? *database : *directory;
   AheadList ahead = ahead_list(*planned, database->store.identity);
+  const auto over = had_ended(target.store, ahead.is_begun() || is_there(planned->mark));
+  if (!over || *over) {
+    return !over ? fail(over.error())
+                 : fail(ErrorCode::Conflict,
+                        "The database has rows and is not being filled any more: the move had ended, and daemons may "
+                        "work with it. Remove `moving` and `moved-ahead` from " +
+                            planned->of_directory.data.string() +
+                            "; or make the database anew, where an earlier release began the move.",
+                        {{"parameter", "to"}});
+  }
   if (Status begun = begin_or_go_on(planned->mark, planned->what, *target.store.database, ahead); !begun) {
     return fail(begun.error());
   }
@@ -286,7 +320,11 @@ Result<MovedStore> move_store(const Settings& settings, const std::string& from,
   if (Status copied = copy_blobs(*hashes, files_of(*source.blobs), *target.blobs, ahead, false, moved); !copied) {
     return fail(copied.error());
   }
-  const auto rows = copy_rows(*source.store.database, *target.store.database);
+  const auto tables = moved_tables(*source.store.database, *target.store.database);
+  if (!tables) {
+    return fail(tables.error());
+  }
+  const auto rows = copy_rows(*source.store.database, *target.store.database, *tables);
   if (!rows) {
     return fail(rows.error());
   }

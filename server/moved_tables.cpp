@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace driftlab::server {
 namespace {
 
 constexpr int kRowsAtOnce = 500;
+constexpr std::size_t kKeysAtOnce = 100;
 
 struct KnownTable {
   std::string_view name;
@@ -173,10 +175,6 @@ Result<std::vector<MovedRow>> selected(Connection& connection, const MovedTable&
   }
 }
 
-std::optional<MovedRow> first_of(std::vector<MovedRow> rows) {
-  return rows.empty() ? std::nullopt : std::optional(std::move(rows.front()));
-}
-
 Status run_with(Connection& connection, const std::string& text, const MovedRow& values) {
   Statement statement = connection.prepare(text);
   for (const MovedValue& value : values) {
@@ -232,9 +230,30 @@ Result<std::vector<MovedRow>> rows_behind(Connection& connection, const MovedTab
   return selected(connection, table, text, key.value_or(MovedRow{}));
 }
 
-Result<std::optional<MovedRow>> row_of(Connection& connection, const MovedTable& table, const MovedRow& key) {
-  const std::string text = "SELECT " + names_of(table) + " FROM " + std::string(table.name) + where_key(table);
-  return selected(connection, table, text, key).map(first_of);
+Result<std::vector<MovedRow>> rows_of(Connection& connection, const MovedTable& table, std::span<const MovedRow> keys) {
+  std::vector<MovedRow> all;
+  for (; !keys.empty(); keys = keys.subspan(std::min(keys.size(), kKeysAtOnce))) {
+    std::vector<std::string> alternatives;
+    MovedRow values;
+    for (const MovedRow& key : keys.first(std::min(keys.size(), kKeysAtOnce))) {
+      alternatives.push_back("(" + joined(table.keys, " = ?", " AND ") + ")");
+      values.insert(values.end(), key.begin(), key.end());
+    }
+    const std::string text = "SELECT " + names_of(table) + " FROM " + std::string(table.name) + " WHERE " +
+                             joined(alternatives, "", " OR ") + " ORDER BY " + joined(table.keys);
+    auto rows = selected(connection, table, text, values);
+    if (!rows) {
+      return fail(rows.error());
+    }
+    all.insert(all.end(), std::make_move_iterator(rows->begin()), std::make_move_iterator(rows->end()));
+  }
+  return all;
+}
+
+Status wait_within_snapshot(Connection& connection) {
+  return connection.engine() == Engine::Postgres
+             ? connection.prepare("SET LOCAL idle_in_transaction_session_timeout = 0").run()
+             : Status{};
 }
 
 Result<std::int64_t> row_count(Database& database, const MovedTable& table) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -37,10 +38,11 @@ struct MovedTable {
 /// The next 500 rows behind a key; from the first where there is none.
 [[nodiscard]] Result<std::vector<MovedRow>> rows_behind(Connection& connection, const MovedTable& table,
                                                         const std::optional<MovedRow>& key);
-/// The row of a key, if it is there.
-[[nodiscard]] Result<std::optional<MovedRow>> row_of(Connection& connection, const MovedTable& table,
-                                                     const MovedRow& key);
-
+/// The rows of these keys, in the order of their keys, as far as they are there.
+[[nodiscard]] Result<std::vector<MovedRow>> rows_of(Connection& connection, const MovedTable& table,
+                                                    std::span<const MovedRow> keys);
+/// Lets the transaction that reads a snapshot wait for as long as its rows are written elsewhere.
+[[nodiscard]] Status wait_within_snapshot(Connection& connection);
 [[nodiscard]] Result<std::int64_t> row_count(Database& database, const MovedTable& table);
 
 [[nodiscard]] Status insert_row(Connection& connection, const MovedTable& table, const MovedRow& row);

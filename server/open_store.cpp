@@ -87,8 +87,10 @@ Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audite
   Database* const database = &(*store)->database();
   const Clock* const clock = &(*store)->clock();
   std::string identity = facts.identity;
-  return OpenedStore{std::move(*lock),   std::move(*store), std::move(told), database, others, clock,
-                     std::move(identity)};
+  std::string filled_from = facts.filled_from;
+  return OpenedStore{
+      std::move(*lock),      std::move(*store), std::move(told), database, others, clock, std::move(identity), 0,
+      std::move(filled_from)};
 }
 #else
 Result<OpenedStore> open_postgres(const Settings& /*settings*/, const AuditListener& /*audited*/) {

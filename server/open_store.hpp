@@ -28,6 +28,8 @@ struct OpenedStore {
   std::string identity = {};
   /// Transactions that were acknowledged and are not in the database any more.
   std::int64_t lost_commits = 0;
+  /// What a database is being filled from by a move; empty: it is not.
+  std::string filled_from = {};
 };
 
 /// Holds the word of the PostgreSQL database whose recordings a folder keeps.

@@ -169,6 +169,33 @@ class Migrate(unittest.TestCase):
             daemon.token = self.token
             self.assertEqual(self.everything(daemon), before)
 
+    def test_what_names_another_goes_with_it(self) -> None:
+        """A model and the one that it was made of are removed between two runs; a half-filled store is no source; a move that ended is not done again."""
+        self.fill()
+        more = ("--blobs", "database", "--data", str(self.folder / "local"))
+        noise = {"process": "white_noise", "params": {"N": {"value": 0.3, "unit": "deg/sqrt(h)"}}}
+        with Daemon(self.data) as daemon:
+            daemon.token = self.token
+            first = daemon.post("/v1/models", {"name": "first", "processes": [noise]})
+            self.assertEqual(first.status, 201, first.describe())
+            second = daemon.post("/v1/models", {"name": "second", "parent": first.json["id"], "processes": [noise, noise]})
+            self.assertEqual(second.status, 201, second.describe())
+            self.ahead(self.data, self.store, *more)
+            for made in (second, first):
+                removed = daemon.request("DELETE", f"/v1/models/{made.json['id']}", None, {"If-Match": "*"})
+                self.assertEqual(removed.status, 204, removed.describe())
+            self.assertGreaterEqual(self.ahead(self.data, self.store, *more)[5], 2)
+            half = self.migrate(self.store, self.folder / "elsewhere", "--blobs", "database", "--data", str(self.folder / "copies"), "--ahead")
+            self.assertIn("is being filled", half.stderr)
+            self.assertEqual(daemon.terminate(), 0)
+        mark = self.data / "moved-ahead"
+        said = mark.read_text()
+        self.moved(self.data, self.store, *more)
+        mark.write_text(said)  # as after a kill in its last steps
+        again = self.migrate(self.data, self.store, *more)
+        self.assertEqual(again.returncode, 2)
+        self.assertIn("had ended", again.stderr)
+
     def test_nothing_is_missing_of_what_was_uploaded_while_it_went_ahead(self) -> None:
         """Clients upload, label, characterise and remove all the time; runs go ahead beside them, one is killed, then the lab is moved."""
         self.fill()
