@@ -227,6 +227,15 @@ Status mend_table(Connection& source, Database& target, const MovedTable& table,
   return number_behind(target, table);
 }
 
+/// What a log says is never taken back: where the target's has other rows, it is no beginning of this source.
+Status check_log(const MovedTable& table, const Differences& differences) {
+  return table.name != "audit" || (differences.gone.empty() && differences.changed.empty())
+             ? Status{}
+             : fail(ErrorCode::Conflict,
+                    "The audit log of the target is not that of the source; begin again with an empty target.",
+                    {{"table", std::string(table.name)}});
+}
+
 /// Of each of the tables.
 Result<std::vector<Differences>> all_differences(Connection& source, Database& target,
                                                  const std::vector<MovedTable>& tables) {
@@ -240,19 +249,13 @@ Result<std::vector<Differences>> all_differences(Connection& source, Database& t
       if (!found) {
         return fail(found.error());
       }
+      if (Status checked = check_log(table, *found); !checked) {
+        return fail(checked.error());
+      }
       all.push_back(*std::move(found));
     }
     return all;
   });
-}
-
-/// What a log says is never taken back: where the target's has other rows, it is no beginning of this source.
-Status check_log(const MovedTable& table, const Differences& differences) {
-  return table.name != "audit" || (differences.gone.empty() && differences.changed.empty())
-             ? Status{}
-             : fail(ErrorCode::Conflict,
-                    "The audit log of the target is not that of the source; begin again with an empty target.",
-                    {{"table", std::string(table.name)}});
 }
 
 /// Rows go before those that they name, and come behind them.
@@ -260,11 +263,6 @@ Result<MovedRows> copy_snapshot(Connection& source, Database& target, const std:
   const auto differences = all_differences(source, target, tables);
   if (!differences) {
     return fail(differences.error());
-  }
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    if (Status checked = check_log(tables[i], (*differences)[i]); !checked) {
-      return fail(checked.error());
-    }
   }
   MovedRows moved;
   for (std::size_t i = tables.size(); i-- > 0;) {
