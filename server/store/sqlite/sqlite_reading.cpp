@@ -29,8 +29,7 @@ class SqliteReading final : public Database {
 }  // namespace
 
 Result<std::unique_ptr<Database>> open_sqlite_reading(const std::filesystem::path& file) {
-  // One that holds a snapshot, and one for questions beside it.
-  auto readers = ReaderPool::open(file, 2);
+  auto readers = ReaderPool::open(file, 1);
   if (!readers) {
     return fail(readers.error());
   }
