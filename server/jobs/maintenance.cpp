@@ -13,6 +13,16 @@ namespace {
 
 constexpr std::int64_t kDayMicros = 24LL * 3600 * 1'000'000;
 
+/// Whether so much time has passed since `done_at`, which is now then.
+bool is_due(std::chrono::steady_clock::time_point& done_at, std::int64_t micros) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - done_at < std::chrono::microseconds(micros)) {
+    return false;
+  }
+  done_at = now;
+  return true;
+}
+
 }  // namespace
 
 Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now) {
@@ -113,8 +123,7 @@ void Maintenance::turn() {
   if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
     rescued_();
   }
-  if (mine && std::chrono::steady_clock::now() - settled_at_ >= std::chrono::microseconds(options_.settle_micros)) {
-    settled_at_ = std::chrono::steady_clock::now();
+  if (mine && is_due(settled_at_, options_.settle_micros)) {
     (void)store_.settle_recordings();
   }
   const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
@@ -122,8 +131,7 @@ void Maintenance::turn() {
     (void)forget_old(store_, options_.budgets, clock_.now());
     (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
   }
-  if (mine && std::chrono::steady_clock::now() - tidied_at_ >= std::chrono::microseconds(options_.tidy_micros)) {
-    tidied_at_ = std::chrono::steady_clock::now();
+  if (mine && is_due(tidied_at_, options_.tidy_micros)) {
     (void)store_.forget_old_replies();
     (void)forget_old(store_, options_.budgets, clock_.now());
     (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
