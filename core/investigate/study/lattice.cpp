@@ -22,10 +22,25 @@ double decimal_place(std::span<const double> rows) {
   return 0.0;
 }
 
-std::vector<double> distinct_values(std::span<const double> rows) {
-  std::vector<double> values(rows.begin(), rows.end());
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
+/// In ascending order; nothing where more than half of the rows are distinct, as in a column without a lattice.
+std::vector<double> repeated_values(std::span<const double> rows) {
+  const std::size_t all = rows.size();
+  constexpr std::size_t kPart = std::size_t{1} << 16U;
+  std::vector<double> values;
+  while (!rows.empty()) {
+    // As many as there are already, so that each is merged a few times only; no more than may settle it.
+    const std::size_t wanted = std::min(values.size(), all / 2 + 1 - values.size());
+    const std::size_t taken = std::min(rows.size(), std::max(kPart, wanted));
+    const auto known = static_cast<std::ptrdiff_t>(values.size());
+    values.insert(values.end(), rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(taken));
+    rows = rows.subspan(taken);
+    std::sort(values.begin() + known, values.end());
+    std::inplace_merge(values.begin(), values.begin() + known, values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    if (values.size() * 2 > all) {
+      return {};
+    }
+  }
   return values;
 }
 
@@ -34,8 +49,8 @@ std::vector<double> distinct_values(std::span<const double> rows) {
 Lattice find_lattice(std::span<const double> rows) {
   Lattice lattice;
   lattice.decimals = decimal_place(rows);
-  const std::vector<double> values = distinct_values(rows);
-  if (values.size() < 3 || values.size() * 2 > rows.size()) {
+  const std::vector<double> values = repeated_values(rows);
+  if (values.size() < 3) {
     return lattice;
   }
   // The step is near the smallest common difference; decimals blur it by one of their units.
