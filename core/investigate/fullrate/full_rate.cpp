@@ -4,6 +4,7 @@
 #include "core/investigate/fullrate/gaps.hpp"
 #include "core/investigate/slow/whitening_walk.hpp"
 #include "core/investigate/study/measured_constants.hpp"
+#include "core/signal/progress.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,12 +31,12 @@ void whiten_further(FullRate& data, Innovations& innovation) {
   PooledAutocovariance covariance;
   for (std::size_t r = 0; r < innovation.size(); ++r) {
     covariance.begin_recording();
-    for (std::size_t i = 0; i < innovation[r].size(); ++i) {
+    for (std::size_t i = 0; i < innovation[r].size() && !polled(data.stop, i); ++i) {
       covariance.take(innovation[r][i], data.used[r][i] != 0);
     }
   }
   const std::vector<double> a = covariance.autoregression();
-  if (a.empty()) {
+  if (a.empty() || data.stopped()) {
     return;
   }
   data.further = a;
@@ -48,7 +49,7 @@ void whiten_further(FullRate& data, Innovations& innovation) {
   for (std::size_t r = 0; r < innovation.size(); ++r) {
     leave_out_starts(data.used[r], squares > 0.1);
     Recent recent;
-    for (std::size_t i = 0; i < innovation[r].size(); ++i) {
+    for (std::size_t i = 0; i < innovation[r].size() && !polled(data.stop, i); ++i) {
       const double x = innovation[r][i];
       double value = x;
       for (std::size_t k = 0; k < std::min(i, a.size()); ++k) {
@@ -149,6 +150,9 @@ void take_spectrum(FullRate& data, std::size_t r, double missing) {
   if (!(missing < kMost)) {
     return;
   }
+  if (data.stopped()) {
+    return;
+  }
   set_spectrum(data, r);
   if (missing >= kFew && !shows_colour(data.spectrum[r], data.slow[r])) {
     data.spectrum[r] = {};
@@ -164,13 +168,13 @@ struct Spread {
 
 /// The innovations of one member under the filter of `states`, each divided by its deviation.
 std::vector<double> innovations_of(const Series& residual, const std::vector<unsigned char>& used,
-                                   const BlockStates& states, Spread& spread) {
+                                   const BlockStates& states, const std::stop_token& stop, Spread& spread) {
   const bool uniform = std::all_of(used.begin(), used.end(), [&](unsigned char u) { return u == used[0]; });
   WhiteningWalk walk(states, uniform, 1);
   std::vector<double> innovation(residual.size());
   double last = -1.0;
   double variance = 0.0;
-  for (std::size_t i = 0; i < innovation.size(); ++i) {
+  for (std::size_t i = 0; i < innovation.size() && !polled(stop, i); ++i) {
     walk.next(used[i] != 0 ? 1.0 : 0.0);
     innovation[i] = walk.whitened(0, residual[i]);
     if (used[i] != 0) {
@@ -200,7 +204,11 @@ Innovations whitened(FullRate& data, const FullRateOptions& options) {
     const Blocks blocks{data.dt_s, 1, recording.time_s(recording.begin), longest_s};
     SlowModel own = filter;
     own.white *= 1.0 + noise_of_reference(data.group->members[r]);
-    innovation.push_back(innovations_of(data.residual[r], data.used[r], block_states(own, blocks, r), spread));
+    const BlockStates states = block_states(own, blocks, r);
+    innovation.push_back(innovations_of(data.residual[r], data.used[r], states, data.stop, spread));
+  }
+  if (data.stopped()) {
+    return innovation;
   }
   const double mean = spread.variances / std::max(1.0, spread.samples);
   data.white_share = std::clamp(data.model.white / data.dt_s / mean, 0.05, 1.0);
@@ -252,7 +260,7 @@ void set_spectrum(FullRate& data, std::size_t r, double f_low_hz) {
   constexpr double kBeside = 2.0;  // [s] Chosen: what it raises lies below the frequencies that are looked at.
   const auto beside = static_cast<std::size_t>(std::max(1.0, kBeside / data.dt_s));
   const FilledGaps whole = fill_gaps(data.residual[r], data.used[r], beside);
-  s = estimate_spectrum(whole.values, data.dt_s, f_low_hz);
+  s = estimate_spectrum(whole.values, data.dt_s, f_low_hz, data.stop);
   s.broken = whole.broken;
   std::vector<double>& slow = data.slow[r];
   slow.clear();

@@ -29,12 +29,13 @@ std::size_t fast_length(std::size_t n) {
   return n;
 }
 
-std::vector<std::complex<double>> transform(const Series& values, std::size_t length) {
+std::vector<std::complex<double>> transform(const Series& values, std::size_t length, const std::stop_token& stop) {
   const std::size_t count = values.size();
-  return half_spectrum(length == 0 ? count : length, [&](std::size_t i) { return i < count ? values[i] : 0.0; });
+  const auto at = [&](std::size_t i) { return i < count ? values[i] : 0.0; };
+  return half_spectrum(length == 0 ? count : length, at, kWholeTransform, stop);
 }
 
-Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz) {
+Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz, const std::stop_token& stop) {
   Spectrum result;
   result.dt_s = dt_s;
   result.samples = fast_length(error.size());
@@ -44,7 +45,11 @@ Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz) {
   }
   mean /= static_cast<double>(result.samples);
   const auto n = static_cast<double>(result.samples);
-  const auto values = half_spectrum(result.samples, [&](std::size_t i) { return error[i] - mean; });
+  const auto at = [&](std::size_t i) { return error[i] - mean; };
+  const auto values = half_spectrum(result.samples, at, kWholeTransform, stop);
+  if (stop.stop_requested()) {
+    return result;
+  }
   const double df = 1.0 / (n * dt_s);
   auto k = static_cast<std::size_t>(std::max(1.0, std::ceil(f_low_hz / df)));
   while (k < result.samples / 2) {

@@ -8,6 +8,7 @@
 #include "core/investigate/slow/slow_model.hpp"
 
 #include <complex>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -24,11 +25,15 @@ struct Spectrum {
 /// The largest number up to `n` whose only factors are 2, 3 and 5.
 [[nodiscard]] std::size_t fast_length(std::size_t n);
 
-/// Discrete Fourier transform of a real series zero-padded to `length` (0: its own): length/2 + 1 values.
-[[nodiscard]] std::vector<std::complex<double>> transform(const Series& values, std::size_t length = 0);
+/// Discrete Fourier transform of a real series zero-padded to `length` (0: its own): length/2 + 1 values, which mean
+/// nothing once `stop` is asked.
+[[nodiscard]] std::vector<std::complex<double>> transform(const Series& values, std::size_t length = 0,
+                                                          const std::stop_token& stop = {});
 
-/// Spectrum of `error` from `f_low_hz` up to, not including, the Nyquist frequency; its mean is removed.
-[[nodiscard]] Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz);
+/// Spectrum of `error` from `f_low_hz` up to, not including, the Nyquist frequency; its mean is removed. No bins once
+/// `stop` is asked.
+[[nodiscard]] Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz,
+                                         const std::stop_token& stop = {});
 
 /// Expected periodogram of the slow components of recording r (without the white part).
 [[nodiscard]] double slow_density(const SlowModel& model, std::size_t r, double f_hz, double dt_s, double samples);
