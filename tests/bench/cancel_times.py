@@ -3,7 +3,7 @@
 
 usage: cancel_times.py [MOMENTS] [--only NAME,NAME] [--seed N] [--busy N]    (default 20 moments; DRIFTLABD is the daemon's program)
 
-Each job is asked for, left to run for a time drawn evenly from [0, LONGEST] and cancelled; a job that ended before is left
+Each job is asked for, left to run for a time drawn evenly from [0, LONGEST], a minute for a day's recording, and cancelled; a job that ended before is left
 out, and the next drawn times are kept below its length. Prints, for each kind, the median and the longest time from the request
 to the state `cancelled`, and the stage that the slowest was in. --busy keeps N processes computing beside the daemon, as a loaded
 machine would. The table of tests/RELIABILITY.md is its output.
@@ -34,8 +34,10 @@ import samples  # noqa: E402
 from daemon import Daemon  # noqa: E402
 
 LONGEST_S = 12.0
+DAY = "investigate, a day of three axes"  # takes minutes, in parts of which each may be long
 RATE_HZ = 100.0
 CHANNELS = {str(k): {"quantity": "angular_rate", "axis": "xyz"[k], "unit": "deg/s"} for k in range(3)}
+REFERENCES = {str(k + 3): {"quantity": "reference_angular_rate", "axis": "xyz"[k], "unit": "deg/s"} for k in range(3)}
 FORCES = {str(k + 3): {"quantity": "specific_force", "axis": "xyz"[k], "unit": "m/s^2"} for k in range(3)}
 
 
@@ -55,16 +57,23 @@ def walk(rows: int, columns: int, seed: int) -> np.ndarray[Any, Any]:
     return values
 
 
-def upload(daemon: Daemon, rows: int, columns: int, seed: int, device: str) -> str:
-    roles = samples.roles({**CHANNELS, **(FORCES if columns == 6 else {})})
-    answer = daemon.upload(npy(walk(rows, columns, seed)), device=device, rate_hz=RATE_HZ, columns=roles)
+def beside_a_reference(rows: int, seed: int) -> np.ndarray[Any, Any]:
+    """Three axes that turn to and fro, and what a table says of the motion; the scale factors are 1.001."""
+    at = np.arange(rows)[:, None] / RATE_HZ
+    motion = np.array([30.0, 20.0, 10.0]) * np.sin(2 * np.pi * np.array([0.05, 0.07, 0.11]) * at)
+    return np.hstack([walk(rows, 3, seed) + 1.001 * motion, motion])
+
+
+def upload(daemon: Daemon, values: np.ndarray[Any, Any], device: str, others: dict[str, dict[str, str]] | None = None, condition: str = "static") -> str:
+    answer = daemon.upload(npy(values), device=device, condition=condition, rate_hz=RATE_HZ,
+                           columns=samples.roles({**CHANNELS, **(others or {})}))
     assert answer.status == 201, answer.describe()
     return str(answer.json["id"])
 
 
 def study(daemon: Daemon, recordings: list[str], device: str, moment: int) -> str:
     """One of its own for every moment: what was examined once is not examined again."""
-    document = {"device": {"id": device}, "recordings": [{"id": f"{moment}-{i}", "recording": recording, "condition": {"kind": "static"}}
+    document = {"device": {"id": device}, "recordings": [{"id": f"{moment}-{i}", "recording": recording}
                                                          for i, recording in enumerate(recordings)]}
     answer = daemon.post("/v1/studies", document)
     assert answer.status == 201, answer.describe()
@@ -73,8 +82,10 @@ def study(daemon: Daemon, recordings: list[str], device: str, moment: int) -> st
 
 def jobs(daemon: Daemon) -> dict[str, Callable[[int], dict[str, Any]]]:
     """Name -> the request of a moment."""
-    long = [upload(daemon, 1_200_000, 6, 1, "long")]
-    several = [upload(daemon, 180_000, 3, 2 + i, "several") for i in range(5)]
+    long = [upload(daemon, walk(1_200_000, 6, 1), "long", FORCES)]
+    several = [upload(daemon, walk(180_000, 3, 2 + i), "several") for i in range(5)]
+    whole_day = [upload(daemon, walk(8_640_000, 3, 8), "day")]
+    turned = [upload(daemon, beside_a_reference(1_200_000, 7), "turned", REFERENCES, "profile")]
     drive_files = [daemon.upload(content, device="car", condition="drive", columns=samples.roles(columns)).json["id"]
                    for content, columns in zip(samples.drive_csvs(900), (samples.DRIVE_IMU, samples.DRIVE_GNSS))]
     drive = daemon.post("/v1/drives", samples.drive_document(*drive_files))
@@ -92,6 +103,8 @@ def jobs(daemon: Daemon) -> dict[str, Callable[[int], dict[str, Any]]]:
         "the same with all that is made on request": asked("characterise", {"recordings": long}, also=["total", "theo1", "psd"], taus=200, dynamic=50),
         "investigate, five recordings of three axes": investigated(several, "several"),
         "investigate, 1.2 million rows of six axes": investigated(long, "long"),
+        "investigate, 1.2 million rows of three axes that turn": investigated(turned, "turned"),
+        DAY: investigated(whole_day, "day"),
         "outage evaluation, the paper's, 20,000 runs": asked("outage_evaluation", {"scenario": "paper"}, runs=20000),
         "outage evaluation, a day at 100 Hz": asked("outage_evaluation", {"scenario": day}),
     }
@@ -148,7 +161,7 @@ def main() -> None:
         for name, request in jobs(daemon).items():
             if flags.only and not any(word in name for word in flags.only.split(",")):
                 continue
-            draw, longest = random.Random(flags.seed), LONGEST_S
+            draw, longest = random.Random(flags.seed), 60.0 if name == DAY else LONGEST_S
             found: list[tuple[float, str]] = []
             for moment in range(flags.moments):
                 ended = cancelled_in(daemon, request(moment), draw.uniform(0.0, longest))

@@ -60,9 +60,9 @@ FaultyRecordings describe(const Study& study, const std::vector<NoisyReference>&
   return fault;
 }
 
-std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
   std::array<std::vector<NoisyReference>, 2> kinds;  // noisy, coarse
-  for (const NoisyReference& one : noisy_references(study)) {
+  for (const NoisyReference& one : noisy_references(study, stop)) {
     kinds.at(one.step > 0.0 ? 1 : 0).push_back(one);
   }
   std::vector<FaultyRecordings> faults;

@@ -27,8 +27,8 @@ void put_right(StudyRecording& recording, const DoubtfulRecording& doubt) {
   renew_error(other);
 }
 
-std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
-  std::vector<DoubtfulRecording> exchanged = doubtful_recordings(study);
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
+  std::vector<DoubtfulRecording> exchanged = doubtful_recordings(study, stop);
   std::erase_if(exchanged, [](const DoubtfulRecording& d) { return d.doubt != RecordingDoubt::SwappedAxes; });
   if (exchanged.empty()) {
     return {};

@@ -10,8 +10,8 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
-  std::vector<DoubtfulRecording> turned = doubtful_recordings(study);
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
+  std::vector<DoubtfulRecording> turned = doubtful_recordings(study, stop);
   std::erase_if(turned, [](const DoubtfulRecording& d) { return d.doubt != RecordingDoubt::TurnedSign; });
   if (turned.empty()) {
     return {};

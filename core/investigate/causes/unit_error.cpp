@@ -59,9 +59,9 @@ FaultyRecordings describe(const Study& study, double factor, const std::vector<D
   return fault;
 }
 
-std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
   std::map<double, std::vector<DoubtfulRecording>> by_factor;
-  for (const DoubtfulRecording& doubt : doubtful_recordings(study)) {
+  for (const DoubtfulRecording& doubt : doubtful_recordings(study, stop)) {
     if (doubt.doubt == RecordingDoubt::OtherUnit) {
       by_factor[doubt.factor].push_back(doubt);
     }

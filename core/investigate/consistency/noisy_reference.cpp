@@ -49,10 +49,11 @@ std::vector<std::complex<double>> segment_of(const Series& values, std::size_t f
   return transform(Series(std::move(tapered)), kSegment);
 }
 
-Bands bands_of(const StudyRecording& recording, const Channel& channel) {
+Bands bands_of(const StudyRecording& recording, const Channel& channel, const std::stop_token& stop) {
   Bands result;
   double segments = 0.0;
-  for (std::size_t from = recording.begin; from + kSegment + 2 <= recording.end; from += kSegment / 2) {
+  for (std::size_t from = recording.begin; from + kSegment + 2 <= recording.end && !stop.stop_requested();
+       from += kSegment / 2) {
     bool whole = true;
     for (std::size_t i = from; i < from + kSegment + 2 && whole; ++i) {
       whole = channel.valid[i] != 0;
@@ -90,8 +91,9 @@ double differenced(std::size_t band) {
   return std::pow(2.0 * std::sin(0.5 * kTurn * middle / static_cast<double>(kSegment)), 4.0);
 }
 
-std::optional<NoisyReference> judge(const StudyRecording& recording, const Channel& channel) {
-  const Bands found = bands_of(recording, channel);
+std::optional<NoisyReference> judge(const StudyRecording& recording, const Channel& channel,
+                                    const std::stop_token& stop) {
+  const Bands found = bands_of(recording, channel, stop);
   if (found.ordinates == 0.0) {
     return std::nullopt;
   }
@@ -173,7 +175,7 @@ bool varies(const StudyRecording& recording, const Series& reference) {
 
 }  // namespace
 
-std::vector<NoisyReference> noisy_references(const Study& study) {
+std::vector<NoisyReference> noisy_references(const Study& study, const std::stop_token& stop) {
   std::vector<NoisyReference> all;
   for (std::size_t r = 0; r < study.recordings.size(); ++r) {
     const StudyRecording& recording = study.recordings[r];
@@ -184,7 +186,7 @@ std::vector<NoisyReference> noisy_references(const Study& study) {
           channel.error.empty() || channel.input_only || !varies(recording, channel.reference)) {
         continue;
       }
-      auto found = judge(recording, channel);
+      auto found = judge(recording, channel, stop);
       if (!found) {
         continue;
       }

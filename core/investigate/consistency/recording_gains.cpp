@@ -92,7 +92,7 @@ const Series& drive_of(const StudyRecording& recording, Quantity quantity, std::
 }
 
 /// Of a channel that has an axis.
-Seen look_at(const Study& study, std::size_t r, std::size_t c) {
+Seen look_at(const Study& study, std::size_t r, std::size_t c, const std::stop_token& stop) {
   const StudyRecording& recording = study.recordings[r];
   const Channel& channel = recording.channels[c];
   Seen seen;
@@ -103,7 +103,7 @@ Seen look_at(const Study& study, std::size_t r, std::size_t c) {
   seen.noise = noise_density(recording, channel);
   const double limit = clipped_at(channel) * std::fabs(channel.unit.factor);
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.dt_s)));
-  for (std::size_t from = recording.begin; from + block <= recording.end; from += block) {
+  for (std::size_t from = recording.begin; from + block <= recording.end && !stop.stop_requested(); from += block) {
     double sum = 0.0;
     double count = 0.0;
     std::array<double, 3> driven{};
@@ -369,7 +369,7 @@ void share_units(const std::vector<Seen>& all, std::vector<DoubtfulRecording>& d
 
 }  // namespace
 
-std::vector<DoubtfulRecording> doubtful_recordings(const Study& study) {
+std::vector<DoubtfulRecording> doubtful_recordings(const Study& study, const std::stop_token& stop) {
   std::vector<Seen> all;
   for (std::size_t r = 0; r < study.recordings.size(); ++r) {
     const StudyRecording& recording = study.recordings[r];
@@ -378,12 +378,15 @@ std::vector<DoubtfulRecording> doubtful_recordings(const Study& study) {
       const bool rate = channel.role.quantity == Quantity::AngularRate && !channel.error.empty();
       const bool force = channel.role.quantity == Quantity::SpecificForce && !channel.reference.empty();
       if (axis_index(channel.role.axis) && (rate || force)) {
-        all.push_back(look_at(study, r, c));
+        all.push_back(look_at(study, r, c, stop));
       }
     }
   }
   std::vector<DoubtfulRecording> doubts;
   for (const Seen& seen : all) {
+    if (stop.stop_requested()) {
+      return {};
+    }
     const auto doubt = judge(all, seen);
     if (!doubt) {
       continue;

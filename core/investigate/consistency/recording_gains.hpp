@@ -13,6 +13,7 @@
 #include "core/investigate/study/study.hpp"
 
 #include <cstddef>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct DoubtfulRecording {
 };
 
 /// Every channel of every recording that does not show its stated motion, axis, sign or unit. A wrong unit is found
-/// only with two other recordings or a motion. O(samples).
-[[nodiscard]] std::vector<DoubtfulRecording> doubtful_recordings(const Study& study);
+/// only with two other recordings or a motion. Nothing once `stop` is asked. O(samples).
+[[nodiscard]] std::vector<DoubtfulRecording> doubtful_recordings(const Study& study, const std::stop_token& stop);
 
 }  // namespace driftlab::investigate

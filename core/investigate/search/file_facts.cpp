@@ -9,14 +9,14 @@
 
 namespace driftlab::investigate {
 
-FileFacts look_at_files(const ChannelGroup& group) {
+FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop) {
   FileFacts facts;
   for (const auto& member : group.members) {
     facts.mask.emplace_back(member.recording->length, 0);
   }
   for (const Cause& cause : cause_registry()) {
     const FileFact* const fact = cause.as<FileFact>();
-    if (fact == nullptr) {
+    if (fact == nullptr || stop.stop_requested()) {
       continue;
     }
     for (Evidence& evidence : fact->find(group)) {

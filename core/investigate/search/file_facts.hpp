@@ -3,6 +3,7 @@
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/study/study.hpp"
 
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -13,7 +14,8 @@ struct FileFacts {
   double lattice_step = 0.0;                     ///< [SI]: a fact's, else that of the values or of their last digit
 };
 
-/// Every cause of the registry that is a fact of the file is looked for, in its order.
-[[nodiscard]] FileFacts look_at_files(const ChannelGroup& group);
+/// Every cause of the registry that is a fact of the file is looked for, in its order; none that comes after `stop` is
+/// asked.
+[[nodiscard]] FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop);
 
 }  // namespace driftlab::investigate

@@ -42,7 +42,7 @@ class GroupSearch {
       return;
     }
     control_.report("facts of " + group_.column, 0.0);
-    FileFacts facts = look_at_files(group_);
+    FileFacts facts = look_at_files(group_, control_.stop);
     mask_ = std::move(facts.mask);
     lattice_step_ = facts.lattice_step;
     outcome_.found = std::move(facts.found);

@@ -41,7 +41,7 @@ RightedRecordings right_recordings(const Study& study, const std::stop_token& st
   if (stop.stop_requested()) {
     return righted;
   }
-  for (const DoubtfulRecording& doubt : doubtful_recordings(present())) {
+  for (const DoubtfulRecording& doubt : doubtful_recordings(present(), stop)) {
     const bool named = doubt.doubt != RecordingDoubt::NoResponse && doubt.doubt != RecordingDoubt::OddGain;
     if (named) {
       continue;
