@@ -158,7 +158,7 @@ std::vector<double> power_in_bands(const Sensor& sensor) {
   std::vector<double> count(power.size(), 0.0);
   for (std::size_t r = 0; r < 3; ++r) {
     const std::vector<double> reading = sensor(r, 31 + r);
-    const std::vector<std::complex<double>> z = transform(Series::view(reading));
+    const std::vector<std::complex<double>> z = half_spectrum_of(Series::view(reading));
     for (std::size_t k = 1; k < z.size(); ++k) {
       const double octave = std::log2(static_cast<double>(k) * kRate / kSamples / 0.1);
       if (octave >= 0.0) {

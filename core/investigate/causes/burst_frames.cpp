@@ -80,7 +80,7 @@ Frames frames_of(const FullRate& data, std::size_t r, const std::vector<double>&
     if (std::find(used.begin(), used.end(), 0) != used.end()) {
       continue;  // the ordinates of a frame with holes are not independent
     }
-    const auto z = transform(whitened(e, from, frames.samples, a));
+    const auto z = half_spectrum_of(whitened(e, from, frames.samples, a));
     std::vector<double> power(frames.top + 1, 0.0);
     for (std::size_t k = 0; k < frames.top; ++k) {
       power[k + 1] = std::norm(z[k]);
@@ -194,7 +194,7 @@ Powers powers_of(const FullRate& data, const std::vector<std::size_t>& scope, co
     const double scale = 2.0 / (static_cast<double>(frames.samples) * static_cast<double>(frames.samples));
     std::vector<std::complex<double>> last;
     for (std::size_t f = 0; f < frames.from.size(); ++f) {
-      const auto z = transform(data.residual[scope[m]].part(frames.from[f], frames.samples));
+      const auto z = half_spectrum_of(data.residual[scope[m]].part(frames.from[f], frames.samples));
       const double p = seen.loud[m][f];
       powers.loud_frames += p;
       powers.other_frames += 1.0 - p;
@@ -377,7 +377,7 @@ std::vector<double> burst_values(const FullRate& data, const std::vector<std::si
       continue;
     }
     const std::size_t from = frames.from[f];
-    const auto z = transform(y.part(from, frames.samples));
+    const auto z = half_spectrum_of(y.part(from, frames.samples));
     for (std::size_t k = 0; k < powers.loud.size(); ++k) {
       const double more = powers.more(k) > 0.0 ? 1.0 - std::sqrt(powers.rest[k] / powers.loud[k]) : 0.0;
       const auto ordinate = static_cast<double>(powers.first + k);

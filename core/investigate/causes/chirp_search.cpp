@@ -89,8 +89,8 @@ class Map {
         even[i] = value * turn[i].real();
         odd[i] = value * turn[i].imag();
       }
-      const auto cosines = transform(even);
-      auto sines = slope == 0 ? std::vector<std::complex<double>>(cosines.size()) : transform(odd);
+      const auto cosines = half_spectrum_of(even);
+      auto sines = slope == 0 ? std::vector<std::complex<double>>(cosines.size()) : half_spectrum_of(odd);
       for (std::complex<double>& value : sines) {
         value = {-value.imag(), value.real()};
       }

@@ -174,7 +174,7 @@ double density_near(const FullRate& data, std::size_t r, double f_hz) {
     return 1.0;
   }
   const std::size_t n = fast_length(data.residual[r].size());
-  const auto z = transform(data.residual[r].part(0, n), 0, data.stop);
+  const auto z = half_spectrum_of(data.residual[r].part(0, n), 0, data.stop);
   const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
   const auto centre = static_cast<std::ptrdiff_t>(std::lround(f_hz / df));
   const auto half = static_cast<std::ptrdiff_t>(std::max(30.0, 0.2 / df));

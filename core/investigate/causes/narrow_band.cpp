@@ -43,7 +43,7 @@ BandPower::BandPower(const FullRate& data, std::size_t r) {
   if (n == 0 || data.stopped()) {
     return;
   }
-  const auto z = transform(data.innovation[r].part(0, n), 0, data.stop);
+  const auto z = half_spectrum_of(data.innovation[r].part(0, n), 0, data.stop);
   df_hz_ = 1.0 / (static_cast<double>(n) * data.dt_s);
   sums_.reserve(z.size() + 1);
   sums_.push_back(0.0);

@@ -46,7 +46,7 @@ std::vector<std::complex<double>> segment_of(const Series& values, std::size_t f
     const double window = 0.5 - 0.5 * std::cos(kTurn * (static_cast<double>(i) + 0.5) / static_cast<double>(kSegment));
     tapered[i] = window * (values[at + 2] - 2.0 * values[at + 1] + values[at]);
   }
-  return transform(Series(std::move(tapered)), kSegment);
+  return half_spectrum_of(Series(std::move(tapered)), kSegment);
 }
 
 Bands bands_of(const StudyRecording& recording, const Channel& channel, const std::stop_token& stop) {

@@ -29,7 +29,8 @@ std::size_t fast_length(std::size_t n) {
   return n;
 }
 
-std::vector<std::complex<double>> transform(const Series& values, std::size_t length, const std::stop_token& stop) {
+std::vector<std::complex<double>> half_spectrum_of(const Series& values, std::size_t length,
+                                                   const std::stop_token& stop) {
   const std::size_t count = values.size();
   const auto at = [&](std::size_t i) { return i < count ? values[i] : 0.0; };
   return half_spectrum(length == 0 ? count : length, at, kWholeTransform, stop);

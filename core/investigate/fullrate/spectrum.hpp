@@ -27,8 +27,8 @@ struct Spectrum {
 
 /// Discrete Fourier transform of a real series zero-padded to `length` (0: its own): length/2 + 1 values, which mean
 /// nothing once `stop` is asked.
-[[nodiscard]] std::vector<std::complex<double>> transform(const Series& values, std::size_t length = 0,
-                                                          const std::stop_token& stop = {});
+[[nodiscard]] std::vector<std::complex<double>> half_spectrum_of(const Series& values, std::size_t length = 0,
+                                                                 const std::stop_token& stop = {});
 
 /// Spectrum of `error` from `f_low_hz` up to, not including, the Nyquist frequency; its mean is removed. No bins once
 /// `stop` is asked.

@@ -111,7 +111,7 @@ double band_statistic(const Series& e, double share) {
   // Of the spectrum, likewise. Chosen, not measured.
   constexpr std::size_t kBands = 16;
   const std::size_t length = fast_length(e.size());
-  const auto z = transform(e.part(0, length));
+  const auto z = half_spectrum_of(e.part(0, length));
   std::vector<double> band(kBands, 0.0);
   std::vector<double> count(kBands, 0.0);
   double total = 0.0;

@@ -102,7 +102,7 @@ class Tiles {
       if (present < 0.9 * static_cast<double>(samples_)) {
         continue;
       }
-      const auto z = transform(Series::view(std::span(score).subspan(from, samples_)));
+      const auto z = half_spectrum_of(Series::view(std::span(score).subspan(from, samples_)));
       std::vector<double> row(bins);
       for (std::size_t k = 0; k < bins; ++k) {
         row[k] = std::norm(z[k + 1]) / present;
