@@ -129,7 +129,8 @@ struct CommonNoise {
 /// doubt. It is held out by its own log likelihood if it declares one, else by the rate of its events: the places that
 /// it marks as events or as spoilt. A fact that declares none of these is not held out.
 struct FileFact {
-  std::vector<Evidence> (*find)(const ChannelGroup& group);
+  /// Once `stop` is asked it ends early, and what it gives counts for nothing.
+  std::vector<Evidence> (*find)(const ChannelGroup& group, const std::stop_token& stop);
   /// Marks the grid places of member r that the found fact has spoilt; nothing after it uses them.
   void (*spoils)(const ChannelGroup& group, const Evidence& found, std::size_t r,
                  std::vector<unsigned char>& mask) = nullptr;

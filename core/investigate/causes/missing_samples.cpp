@@ -10,7 +10,7 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<Evidence> find(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group, const std::stop_token& /*stop*/) {
   Evidence evidence;
   double missing = 0.0;
   double places = 0.0;

@@ -14,15 +14,15 @@ namespace {
 constexpr double kNoticed = 0.1;   ///< step over noise from which it is reported
 constexpr double kStriking = 0.2;  ///< below this it is ranked last
 
-std::vector<Evidence> find(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group, const std::stop_token& stop) {
   Evidence evidence;
   // The recording that tells the step best. The others add nothing: the same multiples are written the same way in all.
   double step = 0.0;
   double sd = 0.0;
   double coarseness = 0.0;
-  for (std::size_t r = 0; r < group.members.size(); ++r) {
+  for (std::size_t r = 0; r < group.members.size() && !stop.stop_requested(); ++r) {
     const Channel& channel = *group.members[r].channel;
-    const Lattice lattice = find_lattice(channel.rows);
+    const Lattice lattice = find_lattice(channel.rows, stop);
     const double si = lattice.step * channel.unit.factor;
     const double seen = noise_of_differences(*group.members[r].recording, channel);
     const double noise = noise_behind_lattice(seen, si);

@@ -13,11 +13,11 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<Evidence> find(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group, const std::stop_token& stop) {
   Evidence evidence;
   double limit = 0.0;
   double decimals = 0.0;
-  for (std::size_t r = 0; r < group.members.size(); ++r) {
+  for (std::size_t r = 0; r < group.members.size() && !stop.stop_requested(); ++r) {
     const Channel& channel = *group.members[r].channel;
     const double value = clipped_at(channel);
     if (!(value > 0.0)) {
@@ -28,7 +28,7 @@ std::vector<Evidence> find(const ChannelGroup& group) {
     evidence.score += static_cast<double>(
         std::count_if(channel.rows.begin(), channel.rows.end(), [&](double v) { return at_limit(v, value); }));
     limit = std::max(limit, si);
-    decimals = std::max(decimals, find_lattice(channel.rows).decimals * channel.unit.factor);
+    decimals = std::max(decimals, find_lattice(channel.rows, stop).decimals * channel.unit.factor);
   }
   if (evidence.members.empty()) {
     return {};

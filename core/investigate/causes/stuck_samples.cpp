@@ -49,11 +49,11 @@ std::vector<double> without_freezes(std::span<const double> v, Runs& runs) {
 }
 
 /// Largest share of one value in any of 32 parts of the record: while the mean stays there, a repeat is that likely.
-double commonest_share(std::span<const double> values) {
+double commonest_share(std::span<const double> values, const std::stop_token& stop) {
   // Parts of the record, short enough for a drifting mean to stay at one value. Chosen, not measured.
   constexpr std::size_t kParts = 32;
   double largest = 0.0;
-  for (std::size_t part = 0; part < kParts; ++part) {
+  for (std::size_t part = 0; part < kParts && !stop.stop_requested(); ++part) {
     const std::size_t from = part * values.size() / kParts;
     const std::size_t to = (part + 1) * values.size() / kParts;
     std::vector<double> sorted(values.begin() + static_cast<std::ptrdiff_t>(from),
@@ -70,7 +70,7 @@ double commonest_share(std::span<const double> values) {
 
 /// The chance is that of equal values far apart; on a lattice, where neighbours are alike, also the share of the
 /// commonest value and the share of runs that go on after one repeat.
-Runs count_runs(const StudyRecording& recording, const Channel& channel) {
+Runs count_runs(const StudyRecording& recording, const Channel& channel, const std::stop_token& stop) {
   Runs runs;
   runs.of.assign(2, 0.0);
   runs.samples = static_cast<double>(channel.rows.size());
@@ -88,6 +88,9 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
     }
     runs.of[repeats] += 1.0;
     repeats = 0;
+  }
+  if (stop.stop_requested()) {
+    return runs;
   }
   const std::vector<double> v = without_freezes(channel.rows, runs);
   const auto awake = static_cast<double>(v.size());
@@ -107,13 +110,13 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   }
   const double goes_on = 1.15 * twice / std::max(1.0, once);
   runs.chance = far;
-  const double step = find_lattice(v).step * channel.unit.factor;
+  const double step = find_lattice(v, stop).step * channel.unit.factor;
   const double noise = noise_of_differences(recording, channel);
   if (far > 0.01 || step > 0.02 * noise) {
     // Gaussian noise about the middle of a lattice place stays on it with erf(step / (2 sqrt(2) sigma)).
     const double behind = noise_behind_lattice(noise, step);
     const double stays = behind > 0.0 ? std::erf(0.5 * step / std::numbers::sqrt2 / behind) : 1.0;
-    runs.chance = std::min(0.999, std::max({far, goes_on, commonest_share(v), stays}));
+    runs.chance = std::min(0.999, std::max({far, goes_on, commonest_share(v, stop), stays}));
   }
   return runs;
 }
@@ -142,7 +145,7 @@ Stuck stuck_in(const Runs& runs) {
   return stuck;
 }
 
-std::vector<Evidence> find(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group, const std::stop_token& stop) {
   Evidence evidence;
   double runs = 0.0;
   double repeats = 0.0;
@@ -150,13 +153,13 @@ std::vector<Evidence> find(const ChannelGroup& group) {
   double variance = 0.0;
   bool unseen = false;  // short runs hide among coincidences
   std::size_t from = 1;
-  for (std::size_t r = 0; r < group.members.size(); ++r) {
+  for (std::size_t r = 0; r < group.members.size() && !stop.stop_requested(); ++r) {
     const Channel& channel = *group.members[r].channel;
     const auto [low, high] = std::minmax_element(channel.rows.begin(), channel.rows.end());
     if (*low == *high) {
       continue;  // a constant channel is another matter
     }
-    const Runs all = count_runs(*group.members[r].recording, channel);
+    const Runs all = count_runs(*group.members[r].recording, channel, stop);
     const Stuck stuck = stuck_in(all);
     const bool freezes = all.freeze >= static_cast<double>(stuck.from);
     if (stuck.repeats < 4.0 || (stuck.runs < 2.0 && !freezes)) {
@@ -216,7 +219,7 @@ std::vector<Evidence> find(const ChannelGroup& group) {
 /// Repeats of runs that chance does not explain.
 void spoils(const ChannelGroup& group, const Evidence& /*found*/, std::size_t r, std::vector<unsigned char>& mask) {
   const Channel& channel = *group.members[r].channel;
-  const std::size_t from = longest_by_chance(count_runs(*group.members[r].recording, channel));
+  const std::size_t from = longest_by_chance(count_runs(*group.members[r].recording, channel, {}));
   std::size_t row = 0;
   std::size_t run_start = 0;
   double last = 0.0;

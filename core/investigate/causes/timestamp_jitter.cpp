@@ -15,7 +15,7 @@ namespace {
 /// measured.
 constexpr double kNoticed = 0.002;
 
-std::vector<Evidence> find(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group, const std::stop_token& /*stop*/) {
   Evidence evidence;
   double square = 0.0;
   double count = 0.0;

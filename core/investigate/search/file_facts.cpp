@@ -19,7 +19,7 @@ FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop) 
     if (fact == nullptr || stop.stop_requested()) {
       continue;
     }
-    for (Evidence& evidence : fact->find(group)) {
+    for (Evidence& evidence : fact->find(group, stop)) {
       evidence.cause = &cause;
       std::vector<std::vector<unsigned char>> spoilt(group.members.size());
       for (const std::size_t r : evidence.members) {
@@ -39,7 +39,7 @@ FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop) 
   }
   if (facts.lattice_step == 0.0) {
     const Channel& channel = *group.members.front().channel;
-    const Lattice lattice = find_lattice(channel.rows);
+    const Lattice lattice = find_lattice(channel.rows, stop);
     facts.lattice_step = std::max(lattice.step, lattice.decimals) * channel.unit.factor;
   }
   return facts;

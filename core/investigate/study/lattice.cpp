@@ -23,7 +23,7 @@ double decimal_place(std::span<const double> rows) {
 }
 
 /// In ascending order; nothing where more than half of the rows are distinct, as in a column without a lattice.
-std::vector<double> repeated_values(std::span<const double> rows) {
+std::vector<double> repeated_values(std::span<const double> rows, const std::stop_token& stop) {
   const std::size_t all = rows.size();
   constexpr std::size_t kPart = std::size_t{1} << 16U;
   std::vector<double> values;
@@ -37,7 +37,7 @@ std::vector<double> repeated_values(std::span<const double> rows) {
     std::sort(values.begin() + known, values.end());
     std::inplace_merge(values.begin(), values.begin() + known, values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
-    if (values.size() * 2 > all) {
+    if (values.size() * 2 > all || stop.stop_requested()) {
       return {};
     }
   }
@@ -46,10 +46,10 @@ std::vector<double> repeated_values(std::span<const double> rows) {
 
 }  // namespace
 
-Lattice find_lattice(std::span<const double> rows) {
+Lattice find_lattice(std::span<const double> rows, const std::stop_token& stop) {
   Lattice lattice;
   lattice.decimals = decimal_place(rows);
-  const std::vector<double> values = repeated_values(rows);
+  const std::vector<double> values = repeated_values(rows, stop);
   if (values.size() < 3) {
     return lattice;
   }

@@ -4,6 +4,7 @@
 #include "core/investigate/study/study.hpp"
 
 #include <span>
+#include <stop_token>
 
 namespace driftlab::investigate {
 
@@ -16,7 +17,8 @@ struct Lattice {
 /// Finds the step of which all values are whole multiples, within the decimals that the file writes. A step is accepted
 /// only if it is at least five times the last decimal place, or if the decimals themselves leave fewer than 200
 /// distinct values. O(n), and O(m log m) in m distinct values, of which a lattice has few.
-[[nodiscard]] Lattice find_lattice(std::span<const double> rows);
+/// Once `stop` is asked it ends early, and what it gives counts for nothing.
+[[nodiscard]] Lattice find_lattice(std::span<const double> rows, const std::stop_token& stop = {});
 
 /// Standard deviation of the sample-to-sample noise of a channel [SI], from differences of its error, cut at five
 /// robust deviations; 0 for a constant channel.
