@@ -56,9 +56,10 @@ constexpr EngineTexts kColumns{
     "column_name COLLATE \"C\""};
 constexpr EngineTexts kTables{
     "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT IN "
-    "('schema_migrations', 'commits', 'recordings_without_result')",
+    "('schema_migrations', 'commits', 'recordings_without_result', 'stored_amounts')",
     "SELECT tablename::TEXT FROM pg_catalog.pg_tables WHERE schemaname = current_schema() AND tablename NOT IN "
-    "('schema_migrations', 'store_identity', 'stored_files', 'stored_file_parts', 'recordings_without_result')"};
+    "('schema_migrations', 'store_identity', 'stored_files', 'stored_file_parts', 'recordings_without_result', "
+    "'stored_amounts')"};
 constexpr std::string_view kSetSequence = "SELECT setval(pg_get_serial_sequence(?1, 'sequence'), greatest(1, ?2))";
 
 std::vector<std::string> split_names(std::string_view names) {

@@ -244,7 +244,7 @@ class Store {
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// Takes some of the recordings that have a result by now off the list of those without one, so that the others are
-  /// found soon. How many.
+  /// found soon, and adds up what changes have added to amounts that are kept. How many recordings.
   [[nodiscard]] virtual Result<int> settle_recordings() = 0;
   /// Of the devices of those ids that are there, at one moment: in one read of each table for all of them.
   [[nodiscard]] virtual Result<DeviceOverviews> overviews(const std::vector<std::string>& device_ids,

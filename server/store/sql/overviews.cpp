@@ -8,7 +8,8 @@ constexpr std::string_view kVisibleDevicesAndRecordings =
     "SELECT (SELECT count(*) FROM devices WHERE name IN (SELECT value FROM json_each(?))), (SELECT count(*) FROM "
     "recordings JOIN devices ON devices.id = device_id WHERE devices.name IN (SELECT value FROM json_each(?)))";
 constexpr std::string_view kCounts =
-    "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
+    "SELECT coalesce((SELECT CAST(sum(number) AS BIGINT) FROM stored_amounts WHERE kept_by = 'devices'), 0), "
+    "coalesce((SELECT CAST(sum(number) AS BIGINT) FROM stored_amounts WHERE kept_by = 'recordings'), 0), "
     "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
 /// Without `WHERE`: what ended since ?, as two sums.
 constexpr std::string_view kEndedSince =

@@ -31,15 +31,23 @@ constexpr std::string_view kSettle =
     "DELETE FROM recordings_without_result WHERE recording_id IN (SELECT recording_id FROM recordings_without_result "
     "WHERE EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings_without_result.recording_id) "
     "LIMIT 10000)";
-constexpr std::string_view kUsageOf =
-    "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
-    "FROM recordings "
-    "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE recordings.device_id = ?1";
-constexpr std::string_view kUsageOfToken =
-    "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
-    "FROM owners JOIN recordings ON recordings.id = owners.object_id "
-    "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE owners.token_id = ?1";
-constexpr std::string_view kBlobBytes = "SELECT coalesce(sum(bytes), 0) FROM blobs";
+/// What triggers keep of a keeper (migration 0028), with PostgreSQL as a row for each change since the last sweep.
+#define DRIFTLAB_AMOUNT "SELECT coalesce(CAST(sum(number) AS BIGINT), 0), coalesce(CAST(sum(bytes) AS BIGINT), 0), "
+constexpr std::string_view kUsageOf = DRIFTLAB_AMOUNT
+    "CASE WHEN EXISTS (SELECT 1 FROM recordings WHERE device_id = ?1 AND blob_sha256 = ?2) THEN 1 ELSE 0 END "
+    "FROM stored_amounts WHERE kept_by = 'device/' || ?1";
+constexpr std::string_view kUsageOfToken = DRIFTLAB_AMOUNT
+    "CASE WHEN EXISTS (SELECT 1 FROM recordings JOIN owners ON object_id = recordings.id WHERE blob_sha256 = ?2 AND "
+    "token_id = ?1) THEN 1 ELSE 0 END FROM stored_amounts WHERE kept_by = 'token/' || ?1";
+#undef DRIFTLAB_AMOUNT
+constexpr std::string_view kBlobBytes =
+    "SELECT coalesce(CAST(sum(bytes) AS BIGINT), 0) FROM stored_amounts WHERE kept_by = 'blobs'";
+/// At most so many at once, as above.
+constexpr std::string_view kSettleAmounts =
+    "WITH gone AS (DELETE FROM stored_amounts WHERE kept_by IN (SELECT kept_by FROM stored_amounts WHERE NOT settled "
+    "LIMIT 10000) RETURNING kept_by, number, bytes) "
+    "INSERT INTO stored_amounts (kept_by, number, bytes, settled) SELECT kept_by, sum(number), sum(bytes), TRUE FROM "
+    "gone GROUP BY kept_by HAVING sum(number) <> 0 OR sum(bytes) <> 0";
 constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
@@ -247,6 +255,10 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
 
 Result<int> settle_recordings(Connection& connection) {
   return connection.prepare(kSettle).run().map([&] { return connection.changes(); });
+}
+
+Status settle_amounts(Connection& connection) {
+  return connection.engine() == Engine::Postgres ? connection.prepare(kSettleAmounts).run() : Status();
 }
 
 Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,

@@ -290,7 +290,10 @@ Result<int> SqlStore::rescue_expired() {
 }
 
 Result<int> SqlStore::settle_recordings() {
-  return database_->write(WriteKind::Fenced, [](Connection& c) { return tables::settle_recordings(c); });
+  return database_->write(WriteKind::Fenced, [](Connection& c) {
+    const Status added = tables::settle_amounts(c);
+    return added ? tables::settle_recordings(c) : Result<int>(fail(added.error()));
+  });
 }
 
 Result<int> SqlStore::end_all_leases() {

@@ -24,17 +24,6 @@ bool nothing_due(Store& store) {
   return claimed && !claimed->has_value();
 }
 
-/// A token of its own, and the caller who holds it.
-Caller somebody(Store& store, const std::string& id) {
-  Token token;
-  token.id = id;
-  token.name = id;
-  token.scope = Scope::Run;
-  token.secret_sha256 = std::string(64 - id.size(), '0') + id;
-  EXPECT_TRUE(dynamic_cast<SqlStore&>(store).access().add_token(token));
-  return {Principal{id, id, Scope::Run, {}, false}, "req", "127.0.0.1"};
-}
-
 Job add_job_of(Store& store, const Caller& caller, const std::string& key, int priority = 5) {
   const ActingFor acting(caller);
   return store.enqueue({"characterise", key, "{}", priority})->job;
@@ -42,8 +31,8 @@ Job add_job_of(Store& store, const Caller& caller, const std::string& key, int p
 
 TEST_P(JobStore, ManyJobsOfOneTokenDoNotStandBeforeTheFirstOfAnother) {
   // A CI pipeline queued a thousand recordings; the one of a person came after them all.
-  const Caller pipeline = somebody(store(), "aaaaaaaa");
-  const Caller person = somebody(store(), "bbbbbbbb");
+  const Caller pipeline = add_caller(store(), "aaaaaaaa");
+  const Caller person = add_caller(store(), "bbbbbbbb");
   std::vector<Job> many;
   for (int i = 0; i < 4; ++i) {
     many.push_back(add_job_of(store(), pipeline, "many " + std::to_string(i)));
@@ -58,8 +47,8 @@ TEST_P(JobStore, ManyJobsOfOneTokenDoNotStandBeforeTheFirstOfAnother) {
 }
 
 TEST_P(JobStore, AJobThatSeveralAskedForIsThatOfTheOneWithTheFewest) {
-  const Caller busy = somebody(store(), "aaaaaaaa");
-  const Caller idle = somebody(store(), "bbbbbbbb");
+  const Caller busy = add_caller(store(), "aaaaaaaa");
+  const Caller idle = add_caller(store(), "bbbbbbbb");
   add_job_of(store(), busy, "running");
   (void)claim_one(store());
   const Job alone = add_job_of(store(), busy, "alone");

@@ -269,7 +269,7 @@ TEST(Migrations, RecordingsOfAnEarlierReleaseHaveTheirNamesAndJobs) {
   EXPECT_EQ((*now)->recording("rec_1")->latest_job, "job_1");
 }
 
-TEST(Migrations, RecordingsOfAnEarlierReleaseAreListedByWhetherTheyHaveAResult) {
+TEST(Migrations, RecordingsOfAnEarlierReleaseAreListedByWhetherTheyHaveAResultAndCounted) {
   const TemporaryDirectory directory;
   const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 26);
   ASSERT_TRUE(open_with(directory.path(), then));
@@ -289,6 +289,10 @@ TEST(Migrations, RecordingsOfAnEarlierReleaseAreListedByWhetherTheyHaveAResult) 
       "created_at, updated_at) VALUES ('rec_1', 'dev_1', '" +
       hash_of("a") +
       "', 1, '{}', 'static', '{}', 0, 0);"
+      "INSERT INTO tokens (id, name, secret_sha256, scope, created_at) VALUES ('tokenone', 'one', '" +
+      hash_of("secret") +
+      "', 'run', 0);"
+      "INSERT INTO owners (object_id, token_id) VALUES ('rec_1', 'tokenone');"
       "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
       "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
       "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
@@ -298,12 +302,23 @@ TEST(Migrations, RecordingsOfAnEarlierReleaseAreListedByWhetherTheyHaveAResult) 
     const auto connection = SqliteConnection::open(file, Access::ReadOnly);
     return (*connection)->query_integer("SELECT count(*) FROM recordings_without_result").value().value();
   };
-  ASSERT_TRUE(open_with(directory.path(), embedded_migrations()));
+  const auto kept = [&](std::int64_t devices, std::int64_t recordings) {
+    const auto store = open_with(directory.path(), embedded_migrations());
+    ASSERT_TRUE(store) << store.error().message;
+    EXPECT_EQ((*store)->counts(std::nullopt)->devices, devices);
+    EXPECT_EQ((*store)->counts(std::nullopt)->recordings, recordings);
+    EXPECT_EQ((*store)->usage_of("dev_1", hash_of("a"))->bytes, recordings) << "of one byte each";
+    EXPECT_EQ((*store)->usage_of_token("tokenone", hash_of("a"))->recordings, recordings);
+  };
+  kept(1, 1);
   EXPECT_EQ(listed(), 0) << "it has a result";
   run("DELETE FROM channel_results");
   EXPECT_EQ(listed(), 1) << "it has none any more";
   run("PRAGMA foreign_keys = ON; DELETE FROM jobs; DELETE FROM recordings");
   EXPECT_EQ(listed(), 0);
+  kept(1, 0);
+  run("DELETE FROM devices");
+  kept(0, 0);
 }
 
 TEST(Migrations, AnchorsOfAnEarlierReleaseKeptNoSettings) {

@@ -1,6 +1,7 @@
 #include "tests/unit/store/world.hpp"
 
 #include "server/store/digest.hpp"
+#include "server/store/sql/sql_store.hpp"
 
 #include <stdlib.h>
 
@@ -64,6 +65,16 @@ Recording add_recording(Store& store, const Device& device, const std::string& s
   Result<RecordingOutcome> added = store.add_recording(blob, recording);
   EXPECT_TRUE(added) << added.error().message;
   return added.value().recording;
+}
+
+Caller add_caller(Store& store, const std::string& id) {
+  Token token;
+  token.id = id;
+  token.name = id;
+  token.scope = Scope::Run;
+  token.secret_sha256 = std::string(64 - id.size(), '0') + id;
+  EXPECT_TRUE(dynamic_cast<SqlStore&>(store).access().add_token(token));
+  return {Principal{id, id, Scope::Run, {}, false}, "req", "127.0.0.1"};
 }
 
 Job add_job(Store& store, const std::string& unique_key, int priority) {

@@ -1,5 +1,6 @@
 #pragma once
 /// A world for tests of server/: a clock that obeys, a directory that vanishes, rows to begin with.
+#include "server/store/principal.hpp"
 #include "server/store/store.hpp"
 
 #include <gtest/gtest.h>
@@ -45,6 +46,8 @@ std::string hash_of(const std::string& seed);
 Device add_device(Store& store, const std::string& name = "phone-07");
 Recording add_recording(Store& store, const Device& device, const std::string& seed = "bytes",
                         const std::string& condition = "static");
+/// A token of its own, and the caller who holds it.
+Caller add_caller(Store& store, const std::string& id);
 Job add_job(Store& store, const std::string& unique_key, int priority = 5);
 Job claim_one(Store& store);
 inline Lease lease_of(const Job& job) { return {job.id, job.attempt}; }
