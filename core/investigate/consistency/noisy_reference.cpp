@@ -187,6 +187,9 @@ std::vector<NoisyReference> noisy_references(const Study& study, const std::stop
         continue;
       }
       auto found = judge(recording, channel, stop);
+      if (stop.stop_requested()) {
+        return {};
+      }
       if (!found) {
         continue;
       }

@@ -26,8 +26,8 @@ struct NoisyReference {
 };
 
 /// Every reference rate whose own noise is more than a fiftieth of the error's power above its motion. A reference
-/// that shares no motion with its channel at any frequency is another matter, and left out. It ends early once `stop`
-/// is asked, and what it gives counts for nothing. O(samples log samples).
+/// that shares no motion with its channel at any frequency is another matter, and left out. Nothing once `stop` is
+/// asked. O(samples log samples).
 [[nodiscard]] std::vector<NoisyReference> noisy_references(const Study& study, const std::stop_token& stop);
 
 }  // namespace driftlab::investigate

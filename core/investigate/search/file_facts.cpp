@@ -19,7 +19,11 @@ FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop) 
     if (fact == nullptr || stop.stop_requested()) {
       continue;
     }
-    for (Evidence& evidence : fact->find(group, stop)) {
+    std::vector<Evidence> found = fact->find(group, stop);
+    if (stop.stop_requested()) {
+      break;
+    }
+    for (Evidence& evidence : found) {
       evidence.cause = &cause;
       std::vector<std::vector<unsigned char>> spoilt(group.members.size());
       for (const std::size_t r : evidence.members) {

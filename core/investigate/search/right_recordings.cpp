@@ -30,7 +30,11 @@ RightedRecordings right_recordings(const Study& study, const std::stop_token& st
     if (family == nullptr || stop.stop_requested()) {
       continue;
     }
-    for (FaultyRecordings& fault : family->find(present(), stop)) {
+    std::vector<FaultyRecordings> found = family->find(present(), stop);
+    if (stop.stop_requested()) {
+      break;
+    }
+    for (FaultyRecordings& fault : found) {
       if (!righted.study) {
         righted.study = study;
       }

@@ -28,7 +28,8 @@ std::vector<double> repeated_values(std::span<const double> rows, const std::sto
   constexpr std::size_t kPart = std::size_t{1} << 16U;
   std::vector<double> values;
   while (!rows.empty()) {
-    // As many as there are already, so that each is merged a few times only; no more than may settle it.
+    // As many as there are already, so that each is merged a few times only; no more than may show that most are
+    // distinct.
     const std::size_t wanted = std::min(values.size(), all / 2 + 1 - values.size());
     const std::size_t taken = std::min(rows.size(), std::max(kPart, wanted));
     const auto known = static_cast<std::ptrdiff_t>(values.size());

@@ -16,7 +16,7 @@ struct Lattice {
 
 /// Finds the step of which all values are whole multiples, within the decimals that the file writes. A step is accepted
 /// only if it is at least five times the last decimal place, or if the decimals themselves leave fewer than 200
-/// distinct values. O(n), and O(m log m) in m distinct values, of which a lattice has few.
+/// distinct values. O(n log m) in m distinct values, of which a lattice has few.
 /// Once `stop` is asked it ends early, and what it gives counts for nothing.
 [[nodiscard]] Lattice find_lattice(std::span<const double> rows, const std::stop_token& stop = {});
 
