@@ -1,7 +1,7 @@
 -- Programs of schema 21 and later may work beside it.
 -- How many devices and recordings there are, how many recordings a device and a token have, and how many bytes those are as uploaded, is kept by
 -- triggers, for to count them reads all their rows, at every upload. kept_by: devices, recordings, blobs, device/ID or token/ID. An amount is the sum of
--- its rows: each change adds one, so that nobody waits for another, and a sweep makes one of them.
+-- its rows: each change adds one, so that nobody waits for another's amounts, and a sweep makes one of them.
 CREATE TABLE stored_amounts (
   kept_by TEXT COLLATE "C" NOT NULL,
   number BIGINT NOT NULL,
@@ -29,7 +29,7 @@ BEGIN
 END
 $body$;
 
--- Owners are written behind recordings, and before them where a lab is moved: whichever comes last counts.
+-- A recording that is removed goes before its owners, and behind them where a lab is moved: whichever goes first takes it off.
 CREATE FUNCTION keep_amount_of_recordings() RETURNS TRIGGER LANGUAGE plpgsql AS $body$
 DECLARE
   sign BIGINT := CASE TG_OP WHEN 'INSERT' THEN 1 ELSE -1 END;
@@ -73,10 +73,11 @@ CREATE TRIGGER owned_recording_counts_no_more AFTER DELETE ON owners REFERENCING
 FOR EACH STATEMENT EXECUTE FUNCTION keep_amount_of_tokens();
 
 -- The triggers hold up whoever would write until the end, so that all is counted once.
+WITH of_devices AS (SELECT device_id, count(*) AS number, sum(bytes) AS bytes FROM recordings JOIN blobs ON sha256 = blob_sha256 GROUP BY device_id)
 INSERT INTO stored_amounts (kept_by, number, bytes, settled)
 SELECT 'devices', count(*), 0, TRUE FROM devices
 UNION ALL SELECT 'blobs', count(*), coalesce(sum(bytes), 0), TRUE FROM blobs
-UNION ALL SELECT 'recordings', count(*), coalesce(sum(bytes), 0), TRUE FROM recordings JOIN blobs ON sha256 = blob_sha256
-UNION ALL SELECT 'device/' || device_id, count(*), sum(bytes), TRUE FROM recordings JOIN blobs ON sha256 = blob_sha256 GROUP BY device_id
+UNION ALL SELECT 'recordings', coalesce(sum(number), 0), coalesce(sum(bytes), 0), TRUE FROM of_devices
+UNION ALL SELECT 'device/' || device_id, number, bytes, TRUE FROM of_devices
 UNION ALL SELECT 'token/' || token_id, count(*), sum(bytes), TRUE FROM owners JOIN recordings ON id = object_id
 JOIN blobs ON sha256 = blob_sha256 GROUP BY token_id;

@@ -30,7 +30,7 @@ CREATE TRIGGER blob_counts_no_more AFTER DELETE ON blobs BEGIN
   UPDATE stored_amounts SET number = number - 1, bytes = bytes - OLD.bytes WHERE kept_by = 'blobs';
 END;
 
--- Owners are written behind recordings, and before them where a lab is moved: whichever comes last counts.
+-- A recording that is removed goes before its owners, and behind them where a lab is moved: whichever goes first takes it off.
 CREATE TRIGGER recording_is_counted AFTER INSERT ON recordings BEGIN
   INSERT INTO stored_amounts (kept_by, number, bytes)
   SELECT keeper, 1, coalesce((SELECT bytes FROM blobs WHERE sha256 = NEW.blob_sha256), 0)

@@ -57,6 +57,7 @@ class Migrate(unittest.TestCase):
             for job in waiting:
                 daemon.finished(job)  # a pooling follows the last characterisation by itself
         said: dict[str, Any] = {target: daemon.items(target) for target in LISTS}
+        said["counts"] = daemon.get("/v1/counts").body
         for recording in said["/v1/recordings"]:
             said[recording["id"]] = daemon.get(f"/v1/recordings/{recording['id']}/content").body
         for job in said["/v1/jobs"]:

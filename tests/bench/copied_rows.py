@@ -17,6 +17,15 @@ SEALS = Path(__file__).resolve().parents[2] / "server/store/sql/seals.cpp"
 # Parents first.
 TABLES = ("devices", "blobs", "recordings", "jobs", "job_devices", "job_recordings", "job_events", "job_results", "channel_results", "fits", "verdicts", "pools")
 OF_A_JOB = "job_id"
+# What triggers keep (migration 0028), which the copies went by.
+AMOUNTS = """
+DELETE FROM stored_amounts;
+INSERT INTO stored_amounts (kept_by, number, bytes, settled)
+SELECT 'devices', count(*), 0, TRUE FROM devices
+UNION ALL SELECT 'blobs', count(*), sum(bytes), TRUE FROM blobs
+UNION ALL SELECT 'recordings', count(*), sum(bytes), TRUE FROM recordings JOIN blobs ON sha256 = blob_sha256
+UNION ALL SELECT 'device/' || device_id, count(*), sum(bytes), TRUE FROM recordings JOIN blobs ON sha256 = blob_sha256 GROUP BY device_id;
+"""
 # The campaign of every id: of a recording its number, and of what was made of it the same; 0 of the device.
 CAMPAIGNS = """
 CREATE TABLE campaigns AS
@@ -115,4 +124,6 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
             ranges = [(first, min(first + COPIES_AT_ONCE, copies) - 1) for first in range(1, copies, COPIES_AT_ONCE)]
             with ThreadPoolExecutor(AT_ONCE) as clients:
                 list(clients.map(lambda bounds: server.sql(setting + insert % (*bounds, copies)), ranges))
+    if server.sql(setting + "SELECT to_regclass('stored_amounts')"):
+        server.sql(setting + AMOUNTS)
     server.sql(setting + "DROP TABLE campaigns; DROP FUNCTION copied, copied_hash, copied_ids")

@@ -9,7 +9,8 @@ namespace driftlab::server::advisory_locks {
 
 /// Migrations wait for each other, in every schema; until the transaction ends.
 inline constexpr std::string_view kBeginMigration =
-    "BEGIN; SET LOCAL statement_timeout = 0; SET LOCAL lock_timeout = 0; SELECT pg_advisory_xact_lock(1685218932)";
+    "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL statement_timeout = 0; SET LOCAL lock_timeout = 0; SELECT "
+    "pg_advisory_xact_lock(1685218932)";
 
 /// The right to work with a schema: alone, or together with others (DaemonLock).
 inline constexpr std::string_view kTakeAlone =

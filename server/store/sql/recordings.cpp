@@ -42,12 +42,17 @@ constexpr std::string_view kUsageOfToken = DRIFTLAB_AMOUNT
 #undef DRIFTLAB_AMOUNT
 constexpr std::string_view kBlobBytes =
     "SELECT coalesce(CAST(sum(bytes) AS BIGINT), 0) FROM stored_amounts WHERE kept_by = 'blobs'";
-/// At most so many at once, as above.
+/// Rows that changes have added, with the one that was made of those before.
 constexpr std::string_view kSettleAmounts =
-    "WITH gone AS (DELETE FROM stored_amounts WHERE kept_by IN (SELECT kept_by FROM stored_amounts WHERE NOT settled "
-    "LIMIT 10000) RETURNING kept_by, number, bytes) "
-    "INSERT INTO stored_amounts (kept_by, number, bytes, settled) SELECT kept_by, sum(number), sum(bytes), TRUE FROM "
-    "gone GROUP BY kept_by HAVING sum(number) <> 0 OR sum(bytes) <> 0";
+    "WITH chosen AS (SELECT ctid AS place, kept_by FROM stored_amounts WHERE NOT settled LIMIT ?1), "
+    "added AS (DELETE FROM stored_amounts WHERE ctid = ANY (ARRAY(SELECT place FROM chosen)) "
+    "RETURNING kept_by, number, bytes), "
+    "before AS (DELETE FROM stored_amounts WHERE settled AND kept_by IN (SELECT kept_by FROM chosen) "
+    "RETURNING kept_by, number, bytes), "
+    "made AS (INSERT INTO stored_amounts (kept_by, number, bytes, settled) "
+    "SELECT kept_by, sum(number), sum(bytes), TRUE FROM (SELECT * FROM added UNION ALL SELECT * FROM before) AS gone "
+    "GROUP BY kept_by HAVING sum(number) <> 0 OR sum(bytes) <> 0) "
+    "SELECT count(*) FROM added";
 constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
@@ -257,8 +262,17 @@ Result<int> settle_recordings(Connection& connection) {
   return connection.prepare(kSettle).run().map([&] { return connection.changes(); });
 }
 
-Status settle_amounts(Connection& connection) {
-  return connection.engine() == Engine::Postgres ? connection.prepare(kSettleAmounts).run() : Status();
+Result<bool> settle_amounts(Connection& connection) {
+  if (connection.engine() != Engine::Postgres) {
+    return false;
+  }
+  constexpr std::int64_t kAtOnce = 10000;
+  Statement statement = connection.prepare(kSettleAmounts);
+  statement.bind(kAtOnce);
+  return one_row(
+             statement, +[](const Statement& row) { return row.integer(0); },
+             Error{ErrorCode::Internal, "The store counts nothing.", {}})
+      .map([](std::int64_t rows) { return rows == kAtOnce; });
 }
 
 Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,

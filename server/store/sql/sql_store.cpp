@@ -290,10 +290,13 @@ Result<int> SqlStore::rescue_expired() {
 }
 
 Result<int> SqlStore::settle_recordings() {
-  return database_->write(WriteKind::Fenced, [](Connection& c) {
-    const Status added = tables::settle_amounts(c);
-    return added ? tables::settle_recordings(c) : Result<int>(fail(added.error()));
-  });
+  constexpr int kTimes = 100;  // the rest is for the next sweep
+  Result<bool> more = true;
+  for (int time = 0; time < kTimes && more.value_or(false); ++time) {
+    more = database_->write(WriteKind::Fenced, [](Connection& c) { return tables::settle_amounts(c); });
+  }
+  const auto listed = database_->write(WriteKind::Fenced, [](Connection& c) { return tables::settle_recordings(c); });
+  return more ? listed : fail(more.error());
 }
 
 Result<int> SqlStore::end_all_leases() {

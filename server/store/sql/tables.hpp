@@ -232,8 +232,9 @@ class FilteredQuery {
 [[nodiscard]] Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std::string>& device_ids,
                                                 const std::optional<Visibility>& visible);
 [[nodiscard]] Result<int> settle_recordings(Connection& connection);
-/// One row of each amount that a change was added to (migration 0028); SQLite has no other.
-[[nodiscard]] Status settle_amounts(Connection& connection);
+/// Adds up some of what changes have added to amounts (migration 0028); SQLite has one row of each. Whether there may
+/// be more.
+[[nodiscard]] Result<bool> settle_amounts(Connection& connection);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
 [[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,

@@ -76,7 +76,7 @@ TEST_P(AmountStore, WhatIsKeptIsWhatIsThereAfterAnySequenceOfChanges) {
   }
 }
 
-TEST_P(AmountStore, ADeviceThatIsGoneIsNotCounted) {
+TEST_P(AmountStore, ADeviceThatIsGoneIsCountedNoMore) {
   const Device device = add_device(store(), "gone");
   const Recording recording = add_recording(store(), device);
   ASSERT_TRUE(store().remove_recording(recording.id, Store::kAnyRevision));

@@ -321,7 +321,9 @@ TEST_F(PostgresStoreTest, AWriteIsAcknowledgedWhenTheSynchronousStandbyHasIt) {
   std::thread writer;
   int commits = 0;
   for (; ended; ++commits) {
-    if (writer.joinable()) writer.join();
+    if (writer.joinable()) {
+      writer.join();
+    }
     ASSERT_LT(commits, 100'000) << "no commit waits";
     ASSERT_TRUE((*connection)->begin("BEGIN; SET LOCAL statement_timeout = 100"));
     ASSERT_TRUE((*connection)->execute("INSERT INTO written VALUES (1)"));
@@ -331,6 +333,7 @@ TEST_F(PostgresStoreTest, AWriteIsAcknowledgedWhenTheSynchronousStandbyHasIt) {
       ended = true;
     });
     while (!ended && number(waiting) != 1) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(600));  // six times the limit of the statement
@@ -402,6 +405,43 @@ std::vector<Migration> next_release(const std::string& sql) {
 std::string beside_this_one() {
   return "-- Programs of schema " + std::to_string(embedded_postgres_migrations().size()) +
          " and later may work beside it.\n";
+}
+
+TEST_F(PostgresStoreTest, AmountsOfAnEarlierReleaseAreCountedAndASweepLeavesOneRowOfEach) {
+  Device device;
+  {
+    PostgresOptions then;
+    const std::vector<Migration>& all = embedded_postgres_migrations();
+    then.migrations = std::vector<Migration>(all.begin(), all.begin() + 27);
+    const auto older = open(then);
+    ASSERT_NE(older, nullptr);
+    const Caller caller = add_caller(*older, "tokenone");
+    const ActingFor acting(caller);
+    device = add_device(*older);
+    add_recording(*older, device, "first");
+    add_recording(*older, device, "second");
+  }
+  const auto store = open();
+  ASSERT_NE(store, nullptr);
+  const auto kept = [&](std::int64_t recordings) {
+    EXPECT_EQ(store->counts(std::nullopt)->devices, 1);
+    EXPECT_EQ(store->counts(std::nullopt)->recordings, recordings);
+    EXPECT_EQ(store->usage_of(device.id, "")->recordings, recordings);
+    EXPECT_EQ(store->usage_of_token("tokenone", "")->recordings, 2);
+    EXPECT_EQ(store->blob_bytes().value(), 1000 * recordings);
+  };
+  kept(2);
+  const auto connection = PostgresConnection::open(uri_, "reader");
+  ASSERT_TRUE(connection);
+  const auto number = [&](const std::string& sql) { return (*connection)->query_integer(sql).value_or(std::nullopt); };
+  EXPECT_EQ(number("SELECT count(*) FROM stored_amounts WHERE NOT settled"), 0);
+  add_recording(*store, device, "third");
+  EXPECT_EQ(number("SELECT count(*) FROM stored_amounts WHERE NOT settled"), 3) << "of the device, of all, of blobs";
+  kept(3);
+  ASSERT_TRUE(store->settle_recordings());
+  EXPECT_EQ(number("SELECT count(*) FROM stored_amounts WHERE NOT settled"), 0);
+  EXPECT_EQ(number("SELECT count(*) FROM stored_amounts"), 5) << "of the token and of devices besides";
+  kept(3);
 }
 
 TEST_F(PostgresStoreTest, AnOlderProgramWorksBesideAMigrationThatSaysSo) {
