@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -32,12 +34,13 @@ std::vector<double> repeated_values(std::span<const double> rows, const std::sto
     // distinct.
     const std::size_t wanted = std::min(values.size(), all / 2 + 1 - values.size());
     const std::size_t taken = std::min(rows.size(), std::max(kPart, wanted));
-    const auto known = static_cast<std::ptrdiff_t>(values.size());
-    values.insert(values.end(), rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(taken));
+    std::vector<double> part(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(taken));
     rows = rows.subspan(taken);
-    std::sort(values.begin() + known, values.end());
-    std::inplace_merge(values.begin(), values.begin() + known, values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
+    std::sort(part.begin(), part.end());
+    part.erase(std::unique(part.begin(), part.end()), part.end());
+    std::vector<double> known = std::move(values);
+    values.clear();
+    std::set_union(known.begin(), known.end(), part.begin(), part.end(), std::back_inserter(values));
     if (values.size() * 2 > all || stop.stop_requested()) {
       return {};
     }
