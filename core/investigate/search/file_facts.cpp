@@ -16,7 +16,7 @@ FileFacts look_at_files(const ChannelGroup& group, const std::stop_token& stop) 
   }
   for (const Cause& cause : cause_registry()) {
     const FileFact* const fact = cause.as<FileFact>();
-    if (fact == nullptr || stop.stop_requested()) {
+    if (fact == nullptr) {
       continue;
     }
     std::vector<Evidence> found = fact->find(group, stop);

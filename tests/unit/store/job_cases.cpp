@@ -1,6 +1,5 @@
 #include "server/store/principal.hpp"
 #include "server/store/retry_policy.hpp"
-#include "server/store/sql/sql_store.hpp"
 #include "tests/unit/store/store_suite.hpp"
 
 namespace driftlab::server {
