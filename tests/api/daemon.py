@@ -56,7 +56,7 @@ class Daemon:
     patience_s = PATIENCE_S  # for an answer
 
     def __init__(self, data: Path | None = None, *, arguments: tuple[str, ...] = (), environment: dict[str, str] | None = None,
-                 before_exec: Callable[[], None] | None = None, listen: str = "127.0.0.1:0", program: str = PROGRAM) -> None:
+                 before_exec: Callable[[], None] | None = None, listen: str = "127.0.0.1:0", program: str = "") -> None:
         self._own = Path(tempfile.mkdtemp(prefix="driftlab-test-")) if data is None else None
         self.data = data if data is not None else self._own / "data"  # type: ignore[operator]
         self.log: list[dict[str, Any]] = []
@@ -68,7 +68,7 @@ class Daemon:
             arguments = ("--store", postgres.cluster().store_of(self.data), *arguments)
         settings = {name: value for name, value in os.environ.items() if not name.startswith("DRIFTLAB_")}
         self.process = subprocess.Popen(
-            [program, "--data", str(self.data), "--listen", listen, *arguments], stdin=subprocess.DEVNULL,
+            [program or PROGRAM, "--data", str(self.data), "--listen", listen, *arguments], stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env={**settings, **(environment or {})},
             preexec_fn=before_exec)
         self._reader = threading.Thread(target=self._read_log, daemon=True)

@@ -99,8 +99,8 @@ def difference(name: str, was: str, now: str) -> str:
 
 def documents(programs: Path | None = None) -> Iterator[tuple[str, str]]:
     driftlab = str(programs / "driftlab") if programs else os.environ["DRIFTLAB"]
-    daemon.PROGRAM = str(programs / "driftlabd") if programs else os.environ["DRIFTLABD"]
-    return corpus.documents(driftlab, lambda: daemon.Daemon(arguments=("--workers", "1")))
+    driftlabd = str(programs / "driftlabd") if programs else os.environ["DRIFTLABD"]
+    return corpus.documents(driftlab, lambda: daemon.Daemon(arguments=("--workers", "1"), program=driftlabd))
 
 
 def write() -> int:
