@@ -14,6 +14,7 @@ With OLD_DAEMON, a driftlabd of an earlier schema, the rows are written for that
 """
 from __future__ import annotations
 
+import http.client
 import os
 import random
 import signal
@@ -33,18 +34,19 @@ from daemon import Daemon  # noqa: E402
 
 RECORDINGS = 10
 REPEATS = 200
+CLIENTS = 16
+ASKING_S = 20.0
 
 
 class Tuned(postgres.Cluster):
     """Loads quickly; a quarter of a small server's memory for its pages."""
 
-    settings = ("shared_buffers=2GB", "max_wal_size=8GB", "wal_level=minimal", "max_wal_senders=0", "maintenance_work_mem=512MB",
+    settings = ("shared_buffers=2GB", "max_wal_size=4GB", "wal_level=minimal", "max_wal_senders=0", "maintenance_work_mem=512MB",
                 "checkpoint_timeout=30min")
 
 
 def make_template(server: postgres.Cluster, folder: Path, program: str) -> None:
-    daemons.PROGRAM = program
-    with Daemon(folder / "d", arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
+    with Daemon(folder / "d", program=program, arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
         for i in range(RECORDINGS):
             condition = "static" if i % 2 == 0 else f"constant_rate:z:{10 * i}:deg/s"
             stored = daemon.upload(samples.csv(samples.noise(6000, 1, i), ["gz"]), device="unit-0000000", id=f"run {i:02d} 0000000", condition=condition,
@@ -125,6 +127,43 @@ class Asked:
         for name, times in took.items():
             p99 = sorted(times)[max(0, round(0.99 * len(times)) - 1)]
             print(f"| {name} | {len(times)} | {statistics.median(times):.1f} | {p99:.1f} | {rows.get(name, 0)} |", flush=True)
+
+
+    def asked_at_once(self) -> None:
+        """Clients that each keep a connection, and ask for tables and lists of any device."""
+        took: dict[str, list[float]] = {}
+        until = time.monotonic() + ASKING_S
+
+        def ask() -> None:
+            connection = http.client.HTTPConnection(self.daemon.host, self.daemon.port)
+            while time.monotonic() < until:
+                for name, target in self.lists().items():
+                    if name not in ("table of an axis", "recordings of a device", "jobs, newest", "fits of a device"):
+                        continue
+                    start = time.perf_counter()
+                    connection.request("GET", target)
+                    answer = connection.getresponse()
+                    answer.read()
+                    assert answer.status == 200, target
+                    took.setdefault(name, []).append(1000.0 * (time.perf_counter() - start))
+
+        clients = [threading.Thread(target=ask) for _ in range(CLIENTS)]
+        for client in clients:
+            client.start()
+        for client in clients:
+            client.join()
+        print(f"\n{CLIENTS} clients at once: {sum(map(len, took.values())) / ASKING_S:.0f} answers a second")
+        for name, times in took.items():
+            print(f"| {name} | {len(times)} | {statistics.median(times):.1f} | {sorted(times)[round(0.99 * len(times)) - 1]:.1f} |", flush=True)
+
+
+def index_again(server: postgres.Cluster, folder: Path) -> None:
+    """How long a migration that adds an index to the fits would hold up who writes them."""
+    schema = server.schema_of(folder)
+    begun = time.monotonic()
+    server.sql(f"SET search_path = {schema}; CREATE INDEX fits_again ON fits (model, id)")
+    print(f"\nan index of fits by model was built in {time.monotonic() - begun:.1f} s", flush=True)
+    server.sql(f"SET search_path = {schema}; DROP INDEX fits_again")
 
 
 def sizes(server: postgres.Cluster, folder: Path) -> None:
@@ -210,19 +249,22 @@ def main() -> None:
             forget_pages(server)
         if os.environ.get("DRIFTLAB_BENCH_FIRST"):
             come_first(server)
-        daemons.PROGRAM, daemons.PATIENCE_S = new, 3600.0
+        daemons.PATIENCE_S = 3600.0
         reader = Reader(server, folder)
         reader.start()
         begun = time.monotonic()
-        with Daemon(folder / "d", arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
+        with Daemon(folder / "d", program=new, arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
             print(f"started after {time.monotonic() - begun:.1f} s, with the migrations of {old if old != new else 'none'}", flush=True)
             reader.ended = True
             reader.join()
             print(f"a reader of three tables read {reader.reads} times meanwhile and waited {reader.longest:.2f} s at most", flush=True)
             for entry in daemon.log:
                 print({key: value for key, value in entry.items() if key not in ("ts", "level")})
-            Asked(daemon, server, folder, devices).table()
+            asked = Asked(daemon, server, folder, devices)
+            asked.table()
+            asked.asked_at_once()
         sizes(server, folder)
+        index_again(server, folder)
         vacuum(server, folder)
     server.remove()
 
