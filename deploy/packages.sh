@@ -16,11 +16,11 @@
 driftlab_packages() {
   case "$1" in
     runtime) echo libboost-url1.81.0 libsqlite3-0 libpq5 libspdlog1.10 libssl3 libarchive13 liblzma5 libzstd1 zlib1g libstdc++6 \
-                  libgeographiclib23 libcairo2 libhdf5-103-1 libhdf5-hl-100 ca-certificates ;;
+                  libgeographiclib23 libcairo2 libjemalloc2 libhdf5-103-1 libhdf5-hl-100 ca-certificates ;;
     build) echo build-essential cmake ninja-build ccache pkg-config git curl ca-certificates \
                 libboost1.81-dev libboost-url1.81-dev nlohmann-json3-dev libeigen3-dev libceres-dev libsqlite3-dev libpq-dev \
                 libspdlog-dev libfmt-dev libcli11-dev libtomlplusplus-dev libssl-dev libexpected-dev libarchive-dev liblzma-dev libzstd-dev zlib1g-dev \
-                libgeographiclib-dev libcairo2-dev libhdf5-dev python3 python3-yaml ;;
+                libgeographiclib-dev libcairo2-dev libhdf5-dev libjemalloc-dev python3 python3-yaml ;;
     dashboard) command -v node >/dev/null || echo nodejs; command -v npm >/dev/null || echo npm ;;
     browser) echo chromium fonts-liberation poppler-utils ;;
     test) echo libgtest-dev libgmock-dev libbenchmark-dev python3-numpy python3-h5py python3-jsonschema xz-utils zstd sqlite3 postgresql prometheus zsh fish \

@@ -175,7 +175,6 @@ struct Daemon::Parts {
       readiness.look_after();
       tell_newer_schema();
       states.look_after();
-      give_back_freed_memory();
     };
     options.maintenance.each_tidy = [this] {
       (void)store->webhooks().forget_deliveries(clock.now() - budgets.keep_deliveries_days * kMicrosPerDay);

@@ -171,7 +171,6 @@ int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved, bool
 
 int main(int argc, char** argv) {
   driftlab::server::occupy_standard_descriptors();
-  driftlab::server::share_heaps();
   CLI::App app{
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
       "Flags win over DRIFTLAB_* variables, which win over the configuration file, which wins over defaults."};

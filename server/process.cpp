@@ -1,7 +1,6 @@
 #include "server/process.hpp"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -19,19 +18,6 @@ void occupy_standard_descriptors() {
       (void)::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY);
     }
   }
-}
-
-void share_heaps() {
-#ifdef __GLIBC__
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  (void)::mallopt(M_ARENA_MAX, cores > 2 ? cores : 2);  // NOLINT(concurrency-mt-unsafe): no other thread yet
-#endif
-}
-
-void give_back_freed_memory() {
-#ifdef __GLIBC__
-  (void)::malloc_trim(0);
-#endif
 }
 
 ProcessUse use_of_this_process() {

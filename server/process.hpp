@@ -12,14 +12,6 @@ namespace driftlab::server {
 /// opened.
 void occupy_standard_descriptors();
 
-/// Freed memory is kept in as many heaps as there are cores, two at least. Left alone, the allocator makes eight for
-/// each core, and every thread that ever did something large keeps a part of it there. Call before threads start.
-void share_heaps();
-
-/// Gives whole pages of freed memory back to the system. Left alone, the allocator keeps them, and what a process that
-/// rests has in memory tells what its clients did last.
-void give_back_freed_memory();
-
 /// What the process has taken so far.
 struct ProcessUse {
   double resident_bytes = 0.0;

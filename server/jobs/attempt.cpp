@@ -5,8 +5,6 @@
 #include "server/store/crash_point.hpp"
 #include "server/store/guarded_round.hpp"
 
-#include <malloc.h>
-
 #include <exception>
 #include <new>
 #include <utility>
@@ -49,8 +47,6 @@ void Attempt::run() {
   if (!carried_out) {
     break_off(carried_out.error());
   }
-  // Give the memory of a large job back to the system, for which the allocator would otherwise wait for its next use.
-  ::malloc_trim(0);
 }
 
 void Attempt::carry_out() {

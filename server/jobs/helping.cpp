@@ -2,8 +2,6 @@
 
 #include "server/jobs/fault_recorder.hpp"
 
-#include <malloc.h>
-
 #include <utility>
 
 namespace driftlab::server {
@@ -24,19 +22,16 @@ void Helping::run() {
   if (!request || job_.is_damaged) {
     return;  // the job's own worker sees that too, and says so
   }
-  {
-    const std::stop_source at_once;
-    (void)at_once.request_stop();
-    const MemoryGate::Share memory(memory_, kind_.cost(*request, context_).memory_bytes, at_once.get_token(), {});
-    if (!memory.held()) {
-      return;
-    }
-    const Executor::Seat seat(executor_);
-    const RunControl control = charged_to(lease_, executor_, stop_.get_token());
-    // A part that ends in an exception is left until its lease runs out: the job's own worker takes it then.
-    (void)kind_.run_in_parts(*request, context_, control, parts_);
+  const std::stop_source at_once;
+  (void)at_once.request_stop();
+  const MemoryGate::Share memory(memory_, kind_.cost(*request, context_).memory_bytes, at_once.get_token(), {});
+  if (!memory.held()) {
+    return;
   }
-  ::malloc_trim(0);
+  const Executor::Seat seat(executor_);
+  const RunControl control = charged_to(lease_, executor_, stop_.get_token());
+  // A part that ends in an exception is left until its lease runs out: the job's own worker takes it then.
+  (void)kind_.run_in_parts(*request, context_, control, parts_);
 }
 
 void Helping::tend(bool renew) {
