@@ -1,6 +1,7 @@
 // A daemon on a directory of its own, Debian's Chromium before it, and what every page must keep to.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
+import {execFileSync, spawn} from 'node:child_process';
+import {createHash} from 'node:crypto';
 import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
@@ -14,12 +15,22 @@ const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 export const PATIENCE_MS = 60000;
 
+// Where a daemon keeps its rows: beside its files, or in a schema of the server that on_postgres.py names.
+function store(data) {
+  const server = process.env.DRIFTLAB_TEST_POSTGRES;
+  if (!server) return [];
+  const schema = 't' + createHash('sha256').update(data).digest('hex').slice(0, 20);
+  const statement = `SET client_min_messages = warning; CREATE SCHEMA IF NOT EXISTS ${schema}`;
+  execFileSync('psql', [`--host=${server}`, '--username=driftlab', '--dbname=postgres', '--no-psqlrc', '--quiet', `--command=${statement}`]);
+  return ['--store', `postgresql:///postgres?user=driftlab&host=${server}&options=-csearch_path%3D${schema}`];
+}
+
 export class Daemon {
   static async start(data = mkdtempSync(join(tmpdir(), 'driftlab-browser-')), port = 0, more = []) {
     const daemon = new Daemon();
     daemon.data = data;
     const environment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !name.startsWith('DRIFTLAB_')));
-    daemon.process = spawn(process.env.DRIFTLABD, ['--data', data, '--listen', `127.0.0.1:${port}`, ...more], {stdio: ['ignore', 'ignore', 'pipe'], env: environment});
+    daemon.process = spawn(process.env.DRIFTLABD, ['--data', data, '--listen', `127.0.0.1:${port}`, ...store(data), ...more], {stdio: ['ignore', 'ignore', 'pipe'], env: environment});
     daemon.port = await new Promise((resolve, reject) => {
       let text = '';
       daemon.process.stderr.on('data', piece => {
