@@ -92,6 +92,13 @@ class VisibleStore final : public Store {
   Result<Recording> recording(std::string_view id) override {
     return owned_by_device(whole_.recording(id), "recording", id);
   }
+  Result<std::vector<Recording>> recordings_of(const std::vector<std::string>& ids) override {
+    auto found = whole_.recordings_of(ids);
+    if (found) {
+      std::erase_if(*found, [&](const Recording& one) { return !see_device(one.device_id, "recording", one.id); });
+    }
+    return found;
+  }
   Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override {
     return whole_.recordings(filter, limited(page));
   }

@@ -6,6 +6,8 @@
 #include "server/jobs/axis_sources.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
+#include <map>
+
 namespace driftlab::server {
 namespace {
 
@@ -92,16 +94,23 @@ Status check_axis_named(Store& store, const Device& device, const TableRequest& 
 
 /// The samples that the qualities of the recordings call frozen.
 Status tell_frozen(Store& store, std::vector<TableSource>& sources) {
+  std::vector<std::string> ids;
+  for (const TableSource& source : sources) {
+    ids.push_back(source.recording_id);
+  }
+  const auto recordings = store.recordings_of(ids);
+  if (!recordings) {
+    return fail(recordings.error());
+  }
+  std::map<std::string_view, const Recording*> by_id;
+  for (const Recording& recording : *recordings) {
+    by_id[recording.id] = &recording;
+  }
   for (TableSource& source : sources) {
-    const auto recording = store.recording(source.recording_id);
-    if (!recording) {
-      if (recording.error().code == ErrorCode::NotFound) {
-        continue;
-      }
-      return fail(recording.error());
+    if (const auto found = by_id.find(source.recording_id); found != by_id.end()) {
+      const auto quality = parse_json(found->second->quality_json);
+      source.frozen = quality ? frozen_samples(quality_from_json(*quality), source.channel.channel) : 0;
     }
-    const auto quality = parse_json(recording->quality_json);
-    source.frozen = quality ? frozen_samples(quality_from_json(*quality), source.channel.channel) : 0;
   }
   return {};
 }

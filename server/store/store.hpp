@@ -242,6 +242,8 @@ class Store {
   /// Of the recordings that the token of that id has added and that are still there, for whatever device.
   [[nodiscard]] virtual Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
+  /// Those of the ids that are there, in no order, in one read.
+  [[nodiscard]] virtual Result<std::vector<Recording>> recordings_of(const std::vector<std::string>& ids) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// Takes some of the recordings that have a result by now off the list of those without one, so that the others are
   /// found soon, and adds up what changes have added to amounts that are kept. How many recordings.

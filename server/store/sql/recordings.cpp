@@ -21,6 +21,8 @@ constexpr std::string_view kRemoveUnusedBlob =
   "recording_id = recordings.id), ''), seal"
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id = ?";
+constexpr std::string_view kByIds =
+    "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id IN (SELECT value FROM json_each(?))";
 constexpr std::string_view kByDeviceAndBlob =
     "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
 constexpr std::string_view kHasResult = "EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings.id)";
@@ -235,6 +237,12 @@ Result<Recording> recording(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
   return one_row(statement, read_sound_recording, absent(id));
+}
+
+Result<std::vector<Recording>> recordings_of(Connection& connection, const std::vector<std::string>& ids) {
+  Statement statement = connection.prepare(kByIds);
+  statement.bind(nlohmann::json(ids).dump());
+  return all_rows(statement, read_sound_recording);
 }
 
 Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {

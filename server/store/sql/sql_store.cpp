@@ -136,6 +136,10 @@ Result<Recording> SqlStore::recording(std::string_view id) {
   return database_->read([&](Connection& c) { return tables::recording(c, id); });
 }
 
+Result<std::vector<Recording>> SqlStore::recordings_of(const std::vector<std::string>& ids) {
+  return database_->read([&](Connection& c) { return tables::recordings_of(c, ids); });
+}
+
 Result<std::vector<Recording>> SqlStore::recordings(const RecordingFilter& filter, const Page& page) {
   return database_->read([&](Connection& c) { return tables::recordings(c, filter, page); });
 }

@@ -72,6 +72,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) override;
   [[nodiscard]] Result<int> forget_ended_jobs(UtcMicros before) override;
   [[nodiscard]] Result<Recording> recording(std::string_view id) override;
+  [[nodiscard]] Result<std::vector<Recording>> recordings_of(const std::vector<std::string>& ids) override;
   [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override;
   [[nodiscard]] Result<Counts> counts(const std::optional<Visibility>& visible) override;
   [[nodiscard]] Result<EndedCounts> ended_since(UtcMicros since, const std::optional<Visibility>& visible) override;

@@ -224,6 +224,7 @@ class FilteredQuery {
 /// Bytes of all blobs, as uploaded.
 [[nodiscard]] Result<std::int64_t> blob_bytes(Connection& connection);
 [[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Recording>> recordings_of(Connection& connection, const std::vector<std::string>& ids);
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
 [[nodiscard]] Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible);

@@ -119,6 +119,22 @@ TEST_P(RecordingStore, ListsByDeviceAndConditionInPages) {
   EXPECT_EQ(store().recordings({}, {})->size(), 7U);
 }
 
+TEST_P(RecordingStore, ThoseOfSomeIdsAreReadAtOnce) {
+  const Device device = add_device(store());
+  std::vector<std::string> ids;
+  for (const char* name : {"a", "b", "c"}) {
+    ids.push_back(store().add_recording(blob_named(name), recording_of(device))->recording.id);
+  }
+  auto read = store().recordings_of({ids[2], "rec_00000000000000000000000000", ids[0], ids[2], "'; --"});
+  ASSERT_TRUE(read);
+  std::ranges::sort(*read, {}, &Recording::id);
+  ASSERT_EQ(read->size(), 2U);
+  EXPECT_EQ(read->front().id, ids[0]);
+  EXPECT_EQ(read->back().id, ids[2]);
+  EXPECT_EQ(read->back().blob_sha256, hash_of("c"));
+  EXPECT_TRUE(store().recordings_of({})->empty());
+}
+
 TEST_P(RecordingStore, ARevisionReplacesTheMeaningAndKeepsTheBytes) {
   Recording recording = add_recording(store(), add_device(store()));
   clock_.advance(kSecond);
