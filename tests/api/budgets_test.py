@@ -12,7 +12,6 @@ import os
 import re
 import resource
 import socket
-import sqlite3
 import subprocess
 import tempfile
 import threading
@@ -350,12 +349,9 @@ class WhatIsOldGoes(unittest.TestCase):
                 daemon.post(f"/v1/jobs/{jobs[-1]}/cancel")
                 self.assertEqual(daemon.finished(jobs[-1])["state"], "cancelled")
             self.assertEqual(daemon.terminate(), 0)
-        database = sqlite3.connect(data / "driftlab.db")
-        before = int((time.time() - 2 * 86400) * 1e6)
-        database.execute("UPDATE recordings SET created_at = ? WHERE id = ?", (before, old["id"]))
-        database.execute("UPDATE jobs SET finished_at = ? WHERE id = ?", (before, jobs[0]))
-        database.commit()
-        database.close()
+            before = int((time.time() - 2 * 86400) * 1e6)
+            daemon.change(f"UPDATE recordings SET created_at = {before} WHERE id = ?", old["id"])
+            daemon.change(f"UPDATE jobs SET finished_at = {before} WHERE id = ?", jobs[0])
         blob = data / "blobs" / old["file"]["sha256"][:2] / old["file"]["sha256"]
         columns = data / "columns" / blob.parent.name / f"{blob.name}.columns"
         for file in (blob, columns):

@@ -152,7 +152,9 @@ test('a large upload goes in pieces, is paused, survives a reload and goes on wh
   const file = {name: 'long bench.csv', mimeType: 'text/csv', buffer: Buffer.from(csv(1900000, 11))};
   const sent = [];
   page.on('request', request => { if (request.method() === 'PATCH') sent.push(Number(request.headers()['upload-offset'])); });
-  await page.route('**/v1/uploads/*', async route => { if (route.request().method() === 'PATCH' && sent.length === 2) await new Promise(resolve => setTimeout(resolve, 1500)); await route.continue(); });
+  let release;
+  const paused = new Promise(resolve => { release = resolve; });
+  await page.route('**/v1/uploads/*', async route => { if (route.request().method() === 'PATCH' && sent.length === 2) await paused; await route.continue(); });
   const [path, stamp] = [`/tmp/driftlab-long-${process.pid}.csv`, new Date(1700000000000)];
   writeFileSync(path, file.buffer);
   utimesSync(path, stamp, stamp);
@@ -161,6 +163,7 @@ test('a large upload goes in pieces, is paused, survives a reload and goes on wh
   await page.getByRole('button', {name: 'Upload only'}).click();
   while (sent.length < 2) await page.waitForTimeout(20);  // the first piece is stored, the second on its way
   await page.getByRole('button', {name: /^Pause/}).click();
+  release();
   await page.getByText(/^paused at/).waitFor();
   await page.reload();
   await page.locator('input[type=file]').setInputFiles(path);
