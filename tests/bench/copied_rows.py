@@ -104,8 +104,12 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
     """Copies 1 to `copies` - 1 of the only device of the store; it is copy 0 itself."""
     setting = f"SET search_path = {schema}; SET session_replication_role = replica; SET synchronous_commit = off; "
     server.sql(setting + CAMPAIGNS)
+    # What is copied is read from tables that do not grow meanwhile.
+    server.sql(setting + f"CREATE SCHEMA {schema}_originals; " +
+               "; ".join(f"CREATE TABLE {schema}_originals.{table} AS SELECT * FROM {table}" for table in TABLES))
+    from_originals = setting.replace(schema, f"{schema}_originals, {schema}", 1)
     seals = seals_of()
-    last = int(server.sql(setting + "SELECT max(campaign) FROM campaigns"))
+    last = int(server.sql(from_originals + "SELECT max(campaign) FROM campaigns"))
     for campaign in range(last + 1):
         for table in TABLES:
             described = server.sql(f"SELECT column_name FROM information_schema.columns WHERE table_schema = '{schema}' AND table_name = '{table}' "
@@ -120,10 +124,10 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
             names = ", ".join(described)
             made = seals.get(table, {})
             target, result = ", ".join([names, *made]), ", ".join([names, *made.values()])
-            insert = f"INSERT INTO {table} ({target}) SELECT {result} FROM ({selected}) AS made"
+            insert = f"INSERT INTO {schema}.{table} ({target}) SELECT {result} FROM ({selected}) AS made"
             ranges = [(first, min(first + COPIES_AT_ONCE, copies) - 1) for first in range(1, copies, COPIES_AT_ONCE)]
             with ThreadPoolExecutor(AT_ONCE) as clients:
-                list(clients.map(lambda bounds: server.sql(setting + insert % (*bounds, copies)), ranges))
+                list(clients.map(lambda bounds: server.sql(from_originals + insert % (*bounds, copies)), ranges))
     if server.sql(setting + "SELECT to_regclass('stored_amounts')"):
         server.sql(setting + AMOUNTS)
-    server.sql(setting + "DROP TABLE campaigns; DROP FUNCTION copied, copied_hash, copied_ids")
+    server.sql(setting + f"DROP SCHEMA {schema}_originals CASCADE; DROP TABLE campaigns; DROP FUNCTION copied, copied_hash, copied_ids")
