@@ -504,6 +504,20 @@ class Kept(unittest.TestCase):
             self.assertEqual(again.status, 202, "made anew")
             self.assertNotEqual(again.json["id"], evaluation)
 
+    def test_a_check_compares_the_amounts_that_are_kept_with_the_rows(self) -> None:
+        with Daemon(self.folder / "data") as daemon:
+            device = daemon.upload(csv(3000), device="a").json["device"]["id"]
+            gone = daemon.upload(csv(2000), device="b").json["id"]
+            self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{gone}", headers={"If-Match": "*"}).status, 204)
+            self.assertEqual(daemon.terminate(), 0)
+        self.assertEqual(tool(PROGRAM, "check", "--data", str(self.folder / "data")).returncode, 0)
+        for change in ("number = number + 1", "number = number - 1, bytes = bytes + 1"):
+            with closing(sqlite3.connect(self.folder / "data/driftlab.db")) as database, database:
+                database.execute(f"UPDATE stored_amounts SET {change} WHERE kept_by = ?", (f"device/{device}",))
+            checked = tool(PROGRAM, "check", "--data", str(self.folder / "data"))
+            self.assertEqual(checked.returncode, 1)
+            self.assertIn(f"The amount that is kept of device/{device} is not that of what is stored.", checked.stderr)
+
     def test_the_background_finds_damaged_rows_and_says_when_they_are_gone(self) -> None:
         with Daemon(self.folder / "data") as daemon:
             recording = daemon.upload(csv(3000)).json["id"]

@@ -23,6 +23,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDatabase = "driftlab.db";
 constexpr const char* kManifest = "manifest.json";
+constexpr const char* kKeepsAmounts = "SELECT name FROM sqlite_master WHERE name = 'stored_amounts'";
+/// A keeper whose amount (migration 0028) is not that of its rows.
+constexpr const char* kWrongAmount =
+    "WITH kept AS (SELECT id, device_id, bytes FROM recordings JOIN blobs ON sha256 = blob_sha256), "
+    "there (kept_by, number, bytes) AS (SELECT 'devices', count(*), 0 FROM devices "
+    "UNION ALL SELECT 'blobs', count(*), total(bytes) FROM blobs "
+    "UNION ALL SELECT 'recordings', count(*), total(bytes) FROM kept "
+    "UNION ALL SELECT 'device/' || device_id, count(*), sum(bytes) FROM kept GROUP BY device_id "
+    "UNION ALL SELECT 'token/' || token_id, count(*), sum(bytes) FROM owners JOIN kept ON id = object_id "
+    "GROUP BY token_id) "
+    "SELECT kept_by FROM (SELECT * FROM there UNION ALL SELECT kept_by, -number, -bytes FROM stored_amounts) "
+    "GROUP BY kept_by HAVING sum(number) <> 0 OR sum(bytes) <> 0 LIMIT 1";
 
 Result<std::unique_ptr<SqliteConnection>> open_to_read(const fs::path& directory) {
   std::error_code none;
@@ -62,6 +74,14 @@ Status check_database(SqliteConnection& connection, std::vector<std::string>& fa
   }
   if (const std::optional<std::string>& orphan = *found) {
     faults.push_back("A row of the table " + *orphan + " refers to one that is not there.");
+  }
+  const auto keeps = connection.query_text(kKeepsAmounts);
+  const auto wrong = keeps && *keeps ? connection.query_text(kWrongAmount) : keeps;
+  if (!wrong) {
+    return fail(wrong.error());
+  }
+  if (*keeps && *wrong) {
+    faults.push_back("The amount that is kept of " + **wrong + " is not that of what is stored.");
   }
   return {};
 }
