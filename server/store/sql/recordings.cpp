@@ -247,8 +247,8 @@ Result<std::vector<Recording>> recordings_of(Connection& connection, const std::
 
 Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {
   FilteredQuery query(kSelect);
-  query.where("device_id = ?", filter.device_id);
-  query.where("condition = ?", filter.condition);
+  query.along("device_id", filter.device_id);
+  query.along("condition", filter.condition);
   if (!filter.labels.empty()) {
     query.where("tags_json <> '{}'");  // an index has only those
   }

@@ -139,12 +139,12 @@ Result<Fit> fit(Connection& connection, std::string_view id) {
 
 Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, const Page& page) {
   FilteredQuery query(kSelectFit);
-  query.where("device_id = ?", filter.device_id);
-  query.where("recording_id = ?", filter.recording_id);
-  query.where("job_id = ?", filter.job_id);
+  query.along("job_id", filter.job_id);
+  query.along("recording_id", filter.recording_id);
+  query.along("device_id", filter.device_id);
+  query.along("model", filter.model);
   query.where("quantity = ?", filter.quantity);
   query.where("axis = ?", filter.axis);
-  query.where("model = ?", filter.model);
   if (filter.best_only.value_or(false)) {
     query.where("rank = 0");
   }

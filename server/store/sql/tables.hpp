@@ -99,6 +99,17 @@ class FilteredQuery {
       values_.push_back(*value);
     }
   }
+  /// Rows of one value, if there is a value, where an index of (column, id) has them one behind the other: the first
+  /// such column leads the order of the page. Ordered by the id alone a plan may walk all rows of the table in the hope
+  /// that those of the value stand everywhere among them; rows of a campaign do not.
+  void along(std::string_view column, const std::optional<std::string>& value) {
+    if (!value || !lead_.empty()) {
+      where(std::string(column) + " = ?", value);
+      return;
+    }
+    lead_ = column;
+    lead_value_ = *value;
+  }
   /// Rows made at that time or later: their ids, which begin with `prefix`, say when.
   void made_since(std::string_view prefix, const std::optional<UtcMicros>& since) {
     where("id >= ?", since ? std::optional(first_id(prefix, *since)) : std::nullopt);
@@ -155,24 +166,25 @@ class FilteredQuery {
     if (page.visible && !guarded_) {
       return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
     }
-    const std::optional<std::string> after = page.after.empty() ? std::nullopt : std::optional(page.after);
     switch (page.order) {
       case PageOrder::OldestFirst:
-        where("id > ?", after);
-        sql_.append(" ORDER BY id LIMIT ?");
+        order_by_id(page.after, " > ", "");
         break;
       case PageOrder::NewestFirst:
-        where("id < ?", after);
-        sql_.append(" ORDER BY id DESC LIMIT ?");
+        order_by_id(page.after, " < ", " DESC");
         break;
       case PageOrder::ByName:
-        if (after) {
-          where("(name, id) > (?, ?)", page.after_name);
-          values_.push_back(*after);
+        if (!lead_.empty()) {
+          where(lead_ + " = ?", lead_value_);
         }
-        sql_.append(" ORDER BY name, id LIMIT ?");
+        if (!page.after.empty()) {
+          where("(name, id) > (?, ?)", page.after_name);
+          values_.push_back(page.after);
+        }
+        sql_.append(" ORDER BY name, id");
         break;
     }
+    sql_.append(" LIMIT ?");
     if (by_values_) {
       Statement planned = connection.prepare(kPlanByValues);
       if (const Status set = planned.run(); !set) {
@@ -188,6 +200,28 @@ class FilteredQuery {
   }
 
  private:
+  /// What comes behind the last row of the page before, if there was one, by the leading column and the id.
+  void order_by_id(const std::string& after, std::string_view behind, std::string_view direction) {
+    std::string key = "id";
+    std::string order = key;
+    std::string last = "?";
+    if (!lead_.empty()) {
+      where(lead_ + " >= ?", lead_value_);
+      where(lead_ + " <= ?", lead_value_);  // were it said to be equal, it would be left out of the order
+      key = "(" + lead_ + ", id)";
+      order = lead_ + std::string(direction) + ", id";
+      last = "(?, ?)";
+    }
+    if (!after.empty()) {
+      where(key + std::string(behind) + last);
+      if (!lead_.empty()) {
+        values_.push_back(lead_value_);
+      }
+      values_.push_back(after);
+    }
+    sql_.append(" ORDER BY ").append(order).append(direction);
+  }
+
   [[nodiscard]] static std::string pattern_of(std::string_view text) {
     std::string pattern = "%" + lower_case(text) + "%";
     std::replace_if(
@@ -202,6 +236,8 @@ class FilteredQuery {
 
   std::string sql_;
   std::vector<std::string> values_;
+  std::string lead_;  ///< column that leads the order of the page; empty: the id alone
+  std::string lead_value_;
   bool by_values_ = false;
   bool first_ = true;
   bool guarded_ = false;

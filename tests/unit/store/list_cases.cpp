@@ -1,6 +1,8 @@
 #include "tests/unit/store/store_suite.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 namespace driftlab::server {
 namespace {
@@ -72,6 +74,50 @@ TEST_P(ListStore, NamesOrderAListAndEqualOnesAreEachThereOnce) {
   EXPECT_TRUE(store().devices(DeviceFilter{"nowhere"}, {})->empty());
   EXPECT_EQ(names_by_page([&](const Page& page) { return store().models({}, page); }),
             (std::vector<std::string>{"x", "y", "y"}));
+}
+
+/// Every recording in that order, two a page.
+std::vector<std::string> ids_by_page(Store& store, const RecordingFilter& filter, PageOrder order) {
+  std::vector<std::string> ids;
+  Page page{"", 2, order};
+  for (auto rows = store.recordings(filter, page); rows && !rows->empty(); rows = store.recordings(filter, page)) {
+    for (const Recording& row : *rows) {
+      ids.push_back(row.id);
+    }
+    page.after = rows->back().id;
+    page.after_name = rows->back().name;
+  }
+  return ids;
+}
+
+TEST_P(ListStore, WhatIsOfOneValueIsListedInEveryOrderAndNothingElse) {
+  const std::array devices{add_device(store(), "one"), add_device(store(), "two")};
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> added;
+  for (int i = 0; i < 20; ++i) {
+    const Device& device = devices[static_cast<std::size_t>(i % 2)];
+    const std::string condition = i % 3 == 0 ? "static" : i % 3 == 1 ? "rotation" : "statid";
+    added[{device.id, condition}].push_back(add_named(store(), device, std::to_string(i), "", condition).id);
+  }
+  for (const std::string device : {devices[0].id, std::string()}) {
+    for (const std::string condition : {"static", "statid", ""}) {
+      RecordingFilter filter;
+      std::vector<std::string> expected;
+      for (const auto& [of, ids] : added) {
+        if ((device.empty() || of.first == device) && (condition.empty() || of.second == condition)) {
+          expected.insert(expected.end(), ids.begin(), ids.end());
+        }
+      }
+      std::ranges::sort(expected);
+      filter.device_id = device.empty() ? std::nullopt : std::optional(device);
+      filter.condition = condition.empty() ? std::nullopt : std::optional(condition);
+      EXPECT_EQ(ids_by_page(store(), filter, PageOrder::OldestFirst), expected) << device << condition;
+      auto by_name = ids_by_page(store(), filter, PageOrder::ByName);
+      std::ranges::sort(by_name);
+      EXPECT_EQ(by_name, expected) << device << condition;
+      std::ranges::reverse(expected);
+      EXPECT_EQ(ids_by_page(store(), filter, PageOrder::NewestFirst), expected) << device << condition;
+    }
+  }
 }
 
 TEST_P(ListStore, TheRowBehindACursorNeedNotBeThereAnyMore) {
