@@ -1,12 +1,9 @@
-#include "schema/json/parameter_table.hpp"
-#include "schema/json/stored_channel.hpp"
-#include "schema/json/trend_table.hpp"
 #include "schema/text/parameter_table.hpp"
 #include "schema/text/trend_table.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
-#include "server/jobs/stored_table.hpp"
+#include "server/jobs/kept_table.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -65,13 +62,6 @@ Result<StoredTableRequest> table_request(const Request& request) {
   return wanted;
 }
 
-Json document_of(const StoredTable& stored) {
-  Json document = driftlab::to_json(stored.table);
-  document["summary"] = driftlab::to_json(verdict_of(stored.table));
-  document["pooling"] = to_json(stored.pooling);
-  return document;
-}
-
 /// One table as text of that media type.
 std::string text_of(const StoredTable& stored, std::string_view type) {
   const std::string note = note_of(stored.pooling);
@@ -85,25 +75,48 @@ std::string text_of(const StoredTable& stored, std::string_view type) {
                                  : table_to_text(stored.table) + (note.empty() ? "" : "! " + note);
 }
 
-/// The tables of all axes: one document, or texts with an empty line between them.
-Response tables_response(const std::vector<StoredTable>& tables, std::string_view type) {
-  Response response;
-  if (type == "application/json") {
-    const ParameterTable& first = tables.front().table;
-    Json document{{"device", first.device},
-                  {"sensor", sensor_of(first.quantity)},
-                  {"method", driftlab::name_of(first.method)},
-                  {"tables", Json::array()}};
-    for (const StoredTable& stored : tables) {
-      document["tables"].push_back(document_of(stored));
-    }
-    response = json_response(200, document);
-  } else {
-    response.content_type = std::string(type) + "; charset=utf-8";
-    for (const StoredTable& stored : tables) {
-      response.body += (response.body.empty() ? "" : "\n") + text_of(stored, type);
-    }
+/// One table as it is, those of all axes in one document.
+Result<Response> table_as_json(Store& store, const StoredTableRequest& wanted) {
+  if (wanted.axis != "all") {
+    return table_document(store, wanted).map([](TableDocument table) {
+      return pooled_response(std::move(table.document), table.pooling);
+    });
   }
+  auto tables = table_documents(store, wanted);
+  if (!tables) {
+    return fail(tables.error());
+  }
+  const Json& first = tables->front().document;
+  Json document{
+      {"device", first["device"]}, {"sensor", first["sensor"]}, {"method", first["method"]}, {"tables", Json::array()}};
+  for (TableDocument& table : *tables) {
+    table.document["pooling"] = to_json(table.pooling);
+    document["tables"].push_back(std::move(table.document));
+  }
+  Response response = json_response(200, document);
+  for (const TableDocument& table : *tables) {
+    say_pending(table.pooling, response);
+  }
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+/// Texts of all axes have an empty line between them.
+Result<Response> table_as_text(Store& store, const StoredTableRequest& wanted, std::string_view type) {
+  const auto tables =
+      wanted.axis == "all" ? stored_tables(store, wanted) : stored_table(store, wanted).map([](StoredTable table) {
+        return std::vector<StoredTable>{std::move(table)};
+      });
+  if (!tables) {
+    return fail(tables.error());
+  }
+  Response response;
+  response.content_type = std::string(type) + "; charset=utf-8";
+  for (const StoredTable& stored : *tables) {
+    response.body += (response.body.empty() ? "" : "\n") + text_of(stored, type);
+    say_pending(stored.pooling, response);
+  }
+  response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 
@@ -118,21 +131,8 @@ Result<Response> get_table(ApiContext& context, const Request& request) {
   if (!wanted) {
     return fail(wanted.error());
   }
-  const bool all = wanted->axis == "all";
-  const auto tables =
-      all ? stored_tables(context.store, *wanted) : stored_table(context.store, *wanted).map([](StoredTable table) {
-        return std::vector<StoredTable>{std::move(table)};
-      });
-  if (!tables) {
-    return fail(tables.error());
-  }
-  Response response = all || *type != "application/json" ? tables_response(*tables, *type)
-                                                         : json_response(200, document_of(tables->front()));
-  for (const StoredTable& stored : *tables) {
-    say_pending(stored.pooling, response);
-  }
-  response.headers.emplace_back("Vary", "Accept");
-  return response;
+  return *type == "application/json" ? table_as_json(context.store, *wanted)
+                                     : table_as_text(context.store, *wanted, *type);
 }
 
 Result<Response> get_trends(ApiContext& context, const Request& request) {
@@ -143,13 +143,23 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
                             "Offered are application/json, text/csv, text/plain and text/markdown.");
   }
   const auto wanted = table_request(request);
-  const auto stored = wanted ? stored_table(context.store, *wanted) : fail(wanted.error());
+  if (!wanted) {
+    return fail(wanted.error());
+  }
+  if (*type == "application/json") {
+    return trends_document(context.store, *wanted).map([](TableDocument trends) {
+      return pooled_response(std::move(trends.document), trends.pooling);
+    });
+  }
+  const auto stored = stored_table(context.store, *wanted);
   if (!stored) {
     return fail(stored.error());
   }
   const TrendTable trends = build_trends(stored->table);
   const std::string note = note_of(stored->pooling);
-  Response response = pooled_response(driftlab::to_json(trends), stored->pooling);
+  Response response;
+  say_pending(stored->pooling, response);
+  response.headers.emplace_back("Vary", "Accept");
   if (*type == "text/plain") {
     response.content_type = "text/plain; charset=utf-8";
     response.body = trends_to_text(trends) + (note.empty() ? "" : "! " + note);

@@ -189,6 +189,12 @@ class VisibleStore final : public Store {
     }
     return whole_.axis_results(axis);
   }
+  Result<std::optional<PooledArtefact>> pooled_artefact(const SensorAxis& axis, std::string_view name) override {
+    if (auto seen = see_device(axis.device_id, "device", axis.device_id); !seen) {
+      return fail(seen.error());
+    }
+    return whole_.pooled_artefact(axis, name);
+  }
   Result<int> queue_missing_pools() override { return whole_.queue_missing_pools(); }
 
   Result<StudyOutcome> add_study(const Study& study) override {

@@ -10,6 +10,7 @@
 #include "schema/json/pooled_sensor.hpp"
 #include "server/jobs/axis_sources.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/kept_table.hpp"
 #include "server/store/pool_job.hpp"
 
 #include <algorithm>
@@ -113,6 +114,11 @@ class Pool final : public JobKind {
     JobResults results;
     results.document_json = to_text(document);
     results.pooled = true;
+    // As whoever reads it gets it.
+    const auto read = parse_json(results.document_json).and_then(pooled_sensor_from_json);
+    if (auto table = read ? keep_table(context.store, axis, std::move(*sources), *read) : std::nullopt) {
+      results.artefacts.push_back(std::move(*table));
+    }
     return results;
   }
 };

@@ -92,7 +92,8 @@ Status check_axis_named(Store& store, const Device& device, const TableRequest& 
               {{"parameter", "axis"}});
 }
 
-/// The samples that the qualities of the recordings call frozen.
+}  // namespace
+
 Status tell_frozen(Store& store, std::vector<TableSource>& sources) {
   std::vector<std::string> ids;
   for (const TableSource& source : sources) {
@@ -114,8 +115,6 @@ Status tell_frozen(Store& store, std::vector<TableSource>& sources) {
   }
   return {};
 }
-
-}  // namespace
 
 std::string_view name_of(PoolingState state) {
   switch (state) {

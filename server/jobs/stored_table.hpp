@@ -37,6 +37,9 @@ struct StoredTable {
   AxisPooling pooling;  ///< method av takes nothing from joint fits: always done
 };
 
+/// Sets the samples of each source that the quality of its recording calls frozen. Errors: those of the store.
+[[nodiscard]] Status tell_frozen(Store& store, std::vector<TableSource>& sources);
+
 /// The field of an error that names the pool job to wait for.
 inline constexpr std::string_view kPendingPool = "pool_job";
 

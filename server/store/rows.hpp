@@ -174,6 +174,12 @@ struct AxisResults {
   std::string pooled_json = {};       ///< its result; empty until it has succeeded
 };
 
+/// What the job that pooled an axis made beside its result.
+struct PooledArtefact {
+  std::string job_id;
+  std::string content;
+};
+
 /// What a result comes to.
 struct ResultVerdict {
   std::string id = {};                ///< `att_...`

@@ -317,6 +317,10 @@ class Store {
                                                                                   std::string_view axis) = 0;
   /// The same with what pools them.
   [[nodiscard]] virtual Result<AxisResults> axis_results(const SensorAxis& axis) = 0;
+  /// The artefact of that name of the job that has pooled exactly the latest results; nothing where none has, or where
+  /// it made none.
+  [[nodiscard]] virtual Result<std::optional<PooledArtefact>> pooled_artefact(const SensorAxis& axis,
+                                                                              std::string_view name) = 0;
   /// Queues the pooling of every axis whose latest results no job pools yet, for the start of a daemon: an earlier
   /// release may have pooled otherwise. How many.
   [[nodiscard]] virtual Result<int> queue_missing_pools() = 0;

@@ -15,7 +15,7 @@ AT_ONCE = 2
 COPIES_AT_ONCE = 5000
 SEALS = Path(__file__).resolve().parents[2] / "server/store/sql/seals.cpp"
 # Parents first.
-TABLES = ("devices", "blobs", "recordings", "jobs", "job_devices", "job_recordings", "job_events", "job_results", "channel_results", "fits", "verdicts", "pools")
+TABLES = ("devices", "blobs", "recordings", "jobs", "job_devices", "job_recordings", "job_events", "job_results", "artefacts", "channel_results", "fits", "verdicts", "pools")
 OF_A_JOB = "job_id"
 # What triggers keep (migration 0028), which the copies went by.
 AMOUNTS = """
@@ -91,6 +91,8 @@ def copy_of(table: str, column: str) -> str:
         return "CASE WHEN request IS NOT NULL THEN encode(sha256(convert_to(copied_ids(request, copy, copies), 'UTF8')), 'hex') ELSE copied_hash(unique_key, copy) END"
     if column == "name" and table in ("devices", "recordings"):
         return "replace(name, '0000000', lpad(copy::TEXT, 7, '0'))"
+    if column == "content":
+        return "replace(copied_ids(content, copy, copies), '0000000', lpad(copy::TEXT, 7, '0'))"
     if column == "metadata_json":
         return "replace(metadata_json, ' 0000000', ' ' || lpad(copy::TEXT, 7, '0'))"
     if column == "request_json":

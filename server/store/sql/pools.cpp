@@ -161,6 +161,27 @@ Result<bool> pools_latest(Connection& connection, std::string_view job_id) {
   return statement.bind(job_id).step();
 }
 
+Result<std::optional<PooledArtefact>> pooled_artefact(Connection& connection, const SensorAxis& axis,
+                                                      std::string_view name) {
+  const auto key = pool_key(connection, axis);
+  if (!key || !*key) {
+    return key ? Result<std::optional<PooledArtefact>>(std::nullopt) : fail(key.error());
+  }
+  auto job = job_of_key(connection, **key);
+  if (!job) {
+    return fail(job.error());
+  }
+  if (!*job || (*job)->is_damaged || (*job)->state != JobState::Succeeded) {
+    return std::optional<PooledArtefact>();
+  }
+  auto content = artefact(connection, (*job)->id, name);
+  if (!content) {
+    return content.error().code == ErrorCode::NotFound ? Result<std::optional<PooledArtefact>>(std::nullopt)
+                                                       : fail(content.error());
+  }
+  return std::optional(PooledArtefact{(*job)->id, std::move(*content)});
+}
+
 Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis) {
   auto latest = latest_channel_results(connection, axis.device_id, axis.quantity, axis.axis);
   const auto pooled = pool_key(connection, axis);

@@ -337,6 +337,10 @@ Result<AxisResults> SqlStore::axis_results(const SensorAxis& axis) {
   return database_->read([&](Connection& c) { return tables::axis_results(c, axis); });
 }
 
+Result<std::optional<PooledArtefact>> SqlStore::pooled_artefact(const SensorAxis& axis, std::string_view name) {
+  return database_->read([&](Connection& c) { return tables::pooled_artefact(c, axis, name); });
+}
+
 Result<int> SqlStore::keep_missing_glances(const GlanceOf& glance_of) {
   int kept = 0;
   while (true) {

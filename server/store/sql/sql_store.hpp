@@ -118,6 +118,8 @@ class SqlStore : public Store {
                                                                           std::string_view quantity,
                                                                           std::string_view axis) override;
   [[nodiscard]] Result<AxisResults> axis_results(const SensorAxis& axis) override;
+  [[nodiscard]] Result<std::optional<PooledArtefact>> pooled_artefact(const SensorAxis& axis,
+                                                                      std::string_view name) override;
   [[nodiscard]] Result<int> queue_missing_pools() override;
 
   [[nodiscard]] Result<StudyOutcome> add_study(const Study& study) override;

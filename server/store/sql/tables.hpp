@@ -354,6 +354,8 @@ class FilteredQuery {
 /// Whether the results that the job was to pool are still the latest of their axis.
 [[nodiscard]] Result<bool> pools_latest(Connection& connection, std::string_view job_id);
 [[nodiscard]] Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis);
+[[nodiscard]] Result<std::optional<PooledArtefact>> pooled_artefact(Connection& connection, const SensorAxis& axis,
+                                                                    std::string_view name);
 
 // ---- studies
 [[nodiscard]] Result<Store::StudyOutcome> add_study(Connection& connection, const Study& study, UtcMicros now);
