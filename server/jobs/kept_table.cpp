@@ -44,14 +44,15 @@ std::optional<TableDocument> kept(Store& store, const StoredTableRequest& reques
   }
   // One that cannot be read is made from the results.
   const auto found = store.pooled_artefact({device->id, std::string(name_of(*quantity)), request.axis}, kArtefact);
-  if (!found || !*found) {
+  const std::optional<PooledArtefact> artefact = found.value_or(std::nullopt);
+  if (!artefact) {
     return std::nullopt;
   }
-  auto content = parse_json((*found)->content);
+  auto content = parse_json(artefact->content);
   if (!content || (*content)["of"] != surroundings_of(*device)) {
     return std::nullopt;
   }
-  return TableDocument{std::move((*content)[part]), {PoolingState::Done, (*found)->job_id, ""}};
+  return TableDocument{std::move((*content)[part]), {PoolingState::Done, artefact->job_id, ""}};
 }
 
 }  // namespace

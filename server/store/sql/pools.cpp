@@ -163,23 +163,28 @@ Result<bool> pools_latest(Connection& connection, std::string_view job_id) {
 
 Result<std::optional<PooledArtefact>> pooled_artefact(Connection& connection, const SensorAxis& axis,
                                                       std::string_view name) {
-  const auto key = pool_key(connection, axis);
-  if (!key || !*key) {
-    return key ? Result<std::optional<PooledArtefact>>(std::nullopt) : fail(key.error());
+  const auto named = pool_key(connection, axis);
+  if (!named) {
+    return fail(named.error());
   }
-  auto job = job_of_key(connection, **key);
-  if (!job) {
-    return fail(job.error());
-  }
-  if (!*job || (*job)->is_damaged || (*job)->state != JobState::Succeeded) {
+  const std::optional<std::string>& key = *named;
+  if (!key) {
     return std::optional<PooledArtefact>();
   }
-  auto content = artefact(connection, (*job)->id, name);
+  const auto found = job_of_key(connection, *key);
+  if (!found) {
+    return fail(found.error());
+  }
+  const std::optional<Job>& job = *found;
+  if (!job || job->is_damaged || job->state != JobState::Succeeded) {
+    return std::optional<PooledArtefact>();
+  }
+  auto content = artefact(connection, job->id, name);
   if (!content) {
     return content.error().code == ErrorCode::NotFound ? Result<std::optional<PooledArtefact>>(std::nullopt)
                                                        : fail(content.error());
   }
-  return std::optional(PooledArtefact{(*job)->id, std::move(*content)});
+  return std::optional(PooledArtefact{job->id, std::move(*content)});
 }
 
 Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis) {

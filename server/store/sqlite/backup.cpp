@@ -80,8 +80,8 @@ Status check_database(SqliteConnection& connection, std::vector<std::string>& fa
   if (!wrong) {
     return fail(wrong.error());
   }
-  if (*keeps && *wrong) {
-    faults.push_back("The amount that is kept of " + **wrong + " is not that of what is stored.");
+  if (const std::optional<std::string>& keeper = *wrong; *keeps && keeper) {
+    faults.push_back("The amount that is kept of " + *keeper + " is not that of what is stored.");
   }
   return {};
 }

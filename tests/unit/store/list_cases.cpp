@@ -98,8 +98,8 @@ TEST_P(ListStore, WhatIsOfOneValueIsListedInEveryOrderAndNothingElse) {
     const std::string condition = i % 3 == 0 ? "static" : i % 3 == 1 ? "rotation" : "statid";
     added[{device.id, condition}].push_back(add_named(store(), device, std::to_string(i), "", condition).id);
   }
-  for (const std::string device : {devices[0].id, std::string()}) {
-    for (const std::string condition : {"static", "statid", ""}) {
+  for (const std::string& device : {devices[0].id, std::string()}) {
+    for (const std::string& condition : {std::string("static"), std::string("statid"), std::string()}) {
       RecordingFilter filter;
       std::vector<std::string> expected;
       for (const auto& [of, ids] : added) {
