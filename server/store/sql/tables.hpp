@@ -99,16 +99,13 @@ class FilteredQuery {
       values_.push_back(*value);
     }
   }
-  /// Rows of one value, if there is a value, where an index of (column, id) has them one behind the other: the first
-  /// such column leads the order of the page. Ordered by the id alone a plan may walk all rows of the table in the hope
-  /// that those of the value stand everywhere among them; rows of a campaign do not.
+  /// Rows of one value, if there is a value, where an index of (column, id) has them one behind the other. The only
+  /// such column leads the order of the page with PostgreSQL. Ordered by the id alone its plan may walk all rows of the
+  /// table in the hope that those of the value stand everywhere among them; rows of a campaign do not.
   void along(std::string_view column, const std::optional<std::string>& value) {
-    if (!value || !lead_.empty()) {
-      where(std::string(column) + " = ?", value);
-      return;
+    if (value) {
+      along_.emplace_back(column, *value);
     }
-    lead_ = column;
-    lead_value_ = *value;
   }
   /// Rows made at that time or later: their ids, which begin with `prefix`, say when.
   void made_since(std::string_view prefix, const std::optional<UtcMicros>& since) {
@@ -166,17 +163,21 @@ class FilteredQuery {
     if (page.visible && !guarded_) {
       return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
     }
+    const bool has_lead =
+        along_.size() == 1 && page.order != PageOrder::ByName && connection.engine() == Engine::Postgres;
+    for (const auto& [column, value] : along_) {
+      if (!has_lead) {
+        where(column + " = ?", value);
+      }
+    }
     switch (page.order) {
       case PageOrder::OldestFirst:
-        order_by_id(page.after, " > ", "");
+        order_by_id(page.after, " > ", "", has_lead);
         break;
       case PageOrder::NewestFirst:
-        order_by_id(page.after, " < ", " DESC");
+        order_by_id(page.after, " < ", " DESC", has_lead);
         break;
       case PageOrder::ByName:
-        if (!lead_.empty()) {
-          where(lead_ + " = ?", lead_value_);
-        }
         if (!page.after.empty()) {
           where("(name, id) > (?, ?)", page.after_name);
           values_.push_back(page.after);
@@ -201,21 +202,22 @@ class FilteredQuery {
 
  private:
   /// What comes behind the last row of the page before, if there was one, by the leading column and the id.
-  void order_by_id(const std::string& after, std::string_view behind, std::string_view direction) {
+  void order_by_id(const std::string& after, std::string_view behind, std::string_view direction, bool has_lead) {
     std::string key = "id";
     std::string order = key;
     std::string last = "?";
-    if (!lead_.empty()) {
-      where(lead_ + " >= ?", lead_value_);
-      where(lead_ + " <= ?", lead_value_);  // were it said to be equal, it would be left out of the order
-      key = "(" + lead_ + ", id)";
-      order = lead_ + std::string(direction) + ", id";
+    if (has_lead) {
+      const auto& [column, value] = along_.front();
+      where(column + " >= ?", value);
+      where(column + " <= ?", value);  // were it said to be equal, it would be left out of the order
+      key = "(" + column + ", id)";
+      order = column + std::string(direction) + ", id";
       last = "(?, ?)";
     }
     if (!after.empty()) {
       where(key + std::string(behind) + last);
-      if (!lead_.empty()) {
-        values_.push_back(lead_value_);
+      if (has_lead) {
+        values_.push_back(along_.front().second);
       }
       values_.push_back(after);
     }
@@ -236,8 +238,7 @@ class FilteredQuery {
 
   std::string sql_;
   std::vector<std::string> values_;
-  std::string lead_;  ///< column that leads the order of the page; empty: the id alone
-  std::string lead_value_;
+  std::vector<std::pair<std::string, std::string>> along_;  ///< columns and the values that they equal
   bool by_values_ = false;
   bool first_ = true;
   bool guarded_ = false;
