@@ -1,7 +1,5 @@
 #include "server/jobs/kept_table.hpp"
 
-#include "core/campaign/trend_table.hpp"
-#include "core/campaign/verdict.hpp"
 #include "schema/json/parameter_table.hpp"
 #include "schema/json/stored_channel.hpp"
 #include "schema/json/trend_table.hpp"

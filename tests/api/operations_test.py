@@ -506,7 +506,8 @@ class Kept(unittest.TestCase):
 
     def test_a_check_compares_the_amounts_that_are_kept_with_the_rows(self) -> None:
         with Daemon(self.folder / "data") as daemon:
-            device = daemon.upload(csv(3000), device="a").json["device"]["id"]
+            daemon.upload(csv(3000), device="a")
+            device = daemon.get("/v1/devices/a").json["id"]
             gone = daemon.upload(csv(2000), device="b").json["id"]
             self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{gone}", headers={"If-Match": "*"}).status, 204)
             self.assertEqual(daemon.terminate(), 0)
