@@ -111,7 +111,7 @@ def copy_device(server: postgres.Cluster, schema: str, copies: int) -> None:
                "; ".join(f"CREATE TABLE {schema}_originals.{table} AS SELECT * FROM {table}" for table in TABLES))
     from_originals = setting.replace(schema, f"{schema}_originals, {schema}", 1)
     seals = seals_of()
-    last = int(server.sql(from_originals + "SELECT max(campaign) FROM campaigns"))
+    last = int(server.sql(setting + "SELECT max(campaign) FROM campaigns"))
     for campaign in range(last + 1):
         for table in TABLES:
             described = server.sql(f"SELECT column_name FROM information_schema.columns WHERE table_schema = '{schema}' AND table_name = '{table}' "
