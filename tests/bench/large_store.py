@@ -10,6 +10,7 @@ copied, for each of its rows has the hash of the row before. Files are not there
 
 DRIFTLAB_BENCH_FIRST=1: what is measured has the processor before whatever else the machine does (SCHED_RR; needs root).
 DRIFTLAB_BENCH_COLD=1: before it is asked the database begins anew with 64 MB of shared buffers, and the system forgets its pages.
+DRIFTLAB_BENCH_ALSO=DAEMON: another program is asked the same questions of the same database afterwards.
 With OLD_DAEMON, a driftlabd of an earlier schema, the rows are written for that; then DRIFTLABD migrates them while a reader asks.
 """
 from __future__ import annotations
@@ -231,6 +232,23 @@ def forget_pages(server: postgres.Cluster) -> None:
     server.start()
 
 
+def ask(server: postgres.Cluster, folder: Path, devices: int, program: str, before: str) -> None:
+    """Everything that is asked through HTTP, of a program that follows another on the database."""
+    reader = Reader(server, folder)
+    reader.start()
+    begun = time.monotonic()
+    with Daemon(folder / "d", program=program, arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
+        print(f"started after {time.monotonic() - begun:.1f} s, with the migrations of {before if before != program else 'none'}", flush=True)
+        reader.ended = True
+        reader.join()
+        print(f"a reader of three tables read {reader.reads} times meanwhile and waited {reader.longest:.2f} s at most", flush=True)
+        for entry in daemon.log:
+            print({key: value for key, value in entry.items() if key not in ("ts", "level")})
+        asked = Asked(daemon, server, folder, devices)
+        asked.table()
+        asked.asked_at_once()
+
+
 def main() -> None:
     postgres.PATIENCE_S = 3600.0
     devices = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
@@ -250,19 +268,10 @@ def main() -> None:
         if os.environ.get("DRIFTLAB_BENCH_FIRST"):
             come_first(server)
         daemons.PATIENCE_S = 3600.0
-        reader = Reader(server, folder)
-        reader.start()
-        begun = time.monotonic()
-        with Daemon(folder / "d", program=new, arguments=("--store", server.store_of(folder), "--budget", "reserve_bytes=0")) as daemon:
-            print(f"started after {time.monotonic() - begun:.1f} s, with the migrations of {old if old != new else 'none'}", flush=True)
-            reader.ended = True
-            reader.join()
-            print(f"a reader of three tables read {reader.reads} times meanwhile and waited {reader.longest:.2f} s at most", flush=True)
-            for entry in daemon.log:
-                print({key: value for key, value in entry.items() if key not in ("ts", "level")})
-            asked = Asked(daemon, server, folder, devices)
-            asked.table()
-            asked.asked_at_once()
+        ask(server, folder, devices, new, old)
+        if also := os.environ.get("DRIFTLAB_BENCH_ALSO"):
+            print(f"\n{also}:")
+            ask(server, folder, devices, also, new)
         sizes(server, folder)
         index_again(server, folder)
         vacuum(server, folder)
