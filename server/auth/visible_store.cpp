@@ -183,6 +183,12 @@ class VisibleStore final : public Store {
     }
     return whole_.latest_channel_results(device_id, quantity, axis);
   }
+  Result<std::vector<std::string>> axes_with_results(std::string_view device_id, std::string_view quantity) override {
+    if (auto seen = see_device(device_id, "device", device_id); !seen) {
+      return fail(seen.error());
+    }
+    return whole_.axes_with_results(device_id, quantity);
+  }
   Result<AxisResults> axis_results(const SensorAxis& axis) override {
     if (auto seen = see_device(axis.device_id, "device", axis.device_id); !seen) {
       return fail(seen.error());

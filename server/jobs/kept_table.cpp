@@ -93,25 +93,17 @@ Result<TableDocument> trends_document(Store& store, const StoredTableRequest& re
 }
 
 Result<std::vector<TableDocument>> table_documents(Store& store, const StoredTableRequest& request) {
+  const auto requests = requests_of_axes(store, request);
+  if (!requests) {
+    return fail(requests.error());
+  }
   std::vector<TableDocument> documents;
-  StoredTableRequest one = request;
-  for (const char* const axis : {"x", "y", "z"}) {
-    one.axis = axis;
+  for (const StoredTableRequest& one : *requests) {
     auto document = table_document(store, one);
-    if (document) {
-      documents.push_back(std::move(*document));
-    } else if (document.error().code != ErrorCode::NotFound) {
+    if (!document) {
       return fail(document.error());
     }
-  }
-  if (documents.empty()) {
-    // Which says what is not there.
-    return stored_tables(store, request).map([&](const std::vector<StoredTable>& tables) {
-      for (const StoredTable& table : tables) {
-        documents.push_back(document_of(table));
-      }
-      return std::move(documents);
-    });
+    documents.push_back(std::move(*document));
   }
   return documents;
 }

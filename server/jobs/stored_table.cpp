@@ -61,24 +61,9 @@ AxisPooling pooling_of(const AxisResults& results) {
                                           : AxisPooling{PoolingState::Failed, job.id, reason_of(job)};
 }
 
-/// The axes about which a sensor has results.
-Result<std::vector<std::string>> axes_with_results(Store& store, const Device& device, Quantity quantity) {
-  std::vector<std::string> axes;
-  for (const std::string_view axis : {"x", "y", "z"}) {
-    auto rows = store.latest_channel_results(device.id, driftlab::name_of(quantity), axis);
-    if (!rows) {
-      return fail(rows.error());
-    }
-    if (!rows->empty()) {
-      axes.emplace_back(axis);
-    }
-  }
-  return axes;
-}
-
 /// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
 Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
-  const auto axes = axes_with_results(store, device, wanted.quantity);
+  const auto axes = store.axes_with_results(device.id, driftlab::name_of(wanted.quantity));
   if (!axes || axes->empty()) {
     return axes ? Status{} : fail(axes.error());
   }
@@ -168,7 +153,7 @@ Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request
   return StoredTable{std::move(*table), wanted->method == TableMethod::Gmwm ? pooling_of(*results) : AxisPooling{}};
 }
 
-Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRequest& request) {
+Result<std::vector<StoredTableRequest>> requests_of_axes(Store& store, const StoredTableRequest& request) {
   StoredTableRequest one = request;
   one.axis.clear();
   auto device = store.device(request.device);
@@ -179,7 +164,7 @@ Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRe
   if (!wanted) {
     return fail(wanted.error());
   }
-  const auto axes = axes_with_results(store, *device, wanted->quantity);
+  const auto axes = store.axes_with_results(device->id, driftlab::name_of(wanted->quantity));
   if (!axes) {
     return fail(axes.error());
   }
@@ -188,9 +173,21 @@ Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRe
                                          std::string(sensor_of(wanted->quantity)) +
                                          " about an axis; characterise a recording of it first.");
   }
-  std::vector<StoredTable> tables;
+  std::vector<StoredTableRequest> requests;
   for (const std::string& axis : *axes) {
     one.axis = axis;
+    requests.push_back(one);
+  }
+  return requests;
+}
+
+Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRequest& request) {
+  const auto requests = requests_of_axes(store, request);
+  if (!requests) {
+    return fail(requests.error());
+  }
+  std::vector<StoredTable> tables;
+  for (const StoredTableRequest& one : *requests) {
     auto table = stored_table(store, one);
     if (!table) {
       return fail(table.error());

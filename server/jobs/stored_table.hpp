@@ -47,8 +47,11 @@ inline constexpr std::string_view kPendingPool = "pool_job";
 /// units that do not convert into each other); those of the store.
 [[nodiscard]] Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request);
 
-/// The tables of every axis of the sensor that has results, in order; `axis` of the request is passed over. Errors:
-/// those of stored_table; NotFound where no axis has any.
+/// The request for the table of each axis of the sensor that has results, in order; the `axis` of this one is passed
+/// over. Errors: those of stored_table; NotFound where no axis has any.
+[[nodiscard]] Result<std::vector<StoredTableRequest>> requests_of_axes(Store& store, const StoredTableRequest& request);
+
+/// The tables of these. Errors: theirs and those of stored_table.
 [[nodiscard]] Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRequest& request);
 
 }  // namespace driftlab::server

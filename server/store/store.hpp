@@ -315,7 +315,10 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                                   std::string_view quantity,
                                                                                   std::string_view axis) = 0;
-  /// The same with what pools them.
+  /// The axes about which such results are, in order; channels without an axis are not asked for.
+  [[nodiscard]] virtual Result<std::vector<std::string>> axes_with_results(std::string_view device_id,
+                                                                           std::string_view quantity) = 0;
+  /// The latest results of an axis with what pools them.
   [[nodiscard]] virtual Result<AxisResults> axis_results(const SensorAxis& axis) = 0;
   /// The artefact of that name of the job that has pooled exactly the latest results; nothing where none has, or where
   /// it made none.

@@ -38,6 +38,13 @@ constexpr std::string_view kLatestChannels =
     "r.condition, r.document_json, r.settings_json, r.created_at, r.glance_json, r.glance_level, "
     "r.seal" DRIFTLAB_LATEST_RESULTS;
 constexpr std::string_view kLatestIds = "SELECT r.id" DRIFTLAB_LATEST_RESULTS;
+/// Each by whether any result of a recording's current revision is about it, which the index of axes answers however
+/// many there are.
+constexpr std::string_view kAxesWithResults =
+    "SELECT axis FROM (SELECT 'x' AS axis UNION ALL SELECT 'y' UNION ALL SELECT 'z') AS named WHERE EXISTS (SELECT 1 "
+    "FROM channel_results AS r "
+    "JOIN recordings AS recording ON recording.id = r.recording_id AND recording.revision = r.recording_revision "
+    "WHERE r.device_id = ? AND r.quantity = ? AND r.axis = named.axis) ORDER BY axis";
 
 std::string read_text(const Statement& row) { return row.text(0); }
 
@@ -157,6 +164,13 @@ Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, c
 Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis) {
   Statement statement = connection.prepare(kLatestIds);
   statement.bind(axis.device_id, axis.quantity, axis.axis);
+  return all_rows(statement, read_text);
+}
+
+Result<std::vector<std::string>> axes_with_results(Connection& connection, std::string_view device_id,
+                                                   std::string_view quantity) {
+  Statement statement = connection.prepare(kAxesWithResults);
+  statement.bind(device_id, quantity);
   return all_rows(statement, read_text);
 }
 

@@ -333,6 +333,10 @@ Result<std::vector<ChannelResult>> SqlStore::latest_channel_results(std::string_
   return database_->read([&](Connection& c) { return tables::latest_channel_results(c, device_id, quantity, axis); });
 }
 
+Result<std::vector<std::string>> SqlStore::axes_with_results(std::string_view device_id, std::string_view quantity) {
+  return database_->read([&](Connection& c) { return tables::axes_with_results(c, device_id, quantity); });
+}
+
 Result<AxisResults> SqlStore::axis_results(const SensorAxis& axis) {
   return database_->read([&](Connection& c) { return tables::axis_results(c, axis); });
 }

@@ -117,6 +117,8 @@ class SqlStore : public Store {
   [[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                           std::string_view quantity,
                                                                           std::string_view axis) override;
+  [[nodiscard]] Result<std::vector<std::string>> axes_with_results(std::string_view device_id,
+                                                                   std::string_view quantity) override;
   [[nodiscard]] Result<AxisResults> axis_results(const SensorAxis& axis) override;
   [[nodiscard]] Result<std::optional<PooledArtefact>> pooled_artefact(const SensorAxis& axis,
                                                                       std::string_view name) override;

@@ -322,7 +322,9 @@ class FilteredQuery {
                                                                         std::string_view device_id,
                                                                         std::string_view quantity,
                                                                         std::string_view axis);
-/// Their ids alone.
+[[nodiscard]] Result<std::vector<std::string>> axes_with_results(Connection& connection, std::string_view device_id,
+                                                                 std::string_view quantity);
+/// The ids alone of the latest results of an axis.
 [[nodiscard]] Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis);
 
 // ---- what results come to

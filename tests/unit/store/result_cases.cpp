@@ -6,11 +6,13 @@ namespace {
 using ResultStore = StoreSuite;
 DRIFTLAB_OVER_ALL_STORES(ResultStore);
 
-/// A finished job over `recording` with results for `channel`.
-JobResults finish_job(Store& store, const Recording& recording, const std::string& channel = "gz") {
+/// A finished job over `recording` with results for `channel`, which is about `axis`.
+JobResults finish_job(Store& store, const Recording& recording, const std::string& channel = "gz",
+                      const std::string& axis = "z") {
   add_job(store, "key " + make_id("job", 0));
   const Job job = claim_one(store);
   JobResults results = results_for(job, recording, channel);
+  results.channels.at(0).axis = axis;
   EXPECT_TRUE(store.succeed(lease_of(job), results)->held);
   for (Fit& fit : results.fits) {
     fit.job_id = job.id;
@@ -150,6 +152,21 @@ TEST_P(ResultStore, ResultsOfAnEarlierRevisionAreNotTheLatest) {
   EXPECT_TRUE(store().latest_channel_results(recording.device_id, "angular_rate", "z")->empty());
   finish_job(store(), recording);
   EXPECT_EQ(store().latest_channel_results(recording.device_id, "angular_rate", "z")->size(), 1U);
+}
+
+TEST_P(ResultStore, AxesAreThoseThatALatestResultIsAbout) {
+  const Device device = add_device(store());
+  Recording recording = add_recording(store(), device);
+  EXPECT_TRUE(store().axes_with_results(device.id, "angular_rate")->empty());
+  for (const auto& [channel, axis] : {std::pair{"gz", "z"}, {"gx", "x"}, {"g", ""}}) {
+    finish_job(store(), recording, channel, axis);
+  }
+  finish_job(store(), add_recording(store(), add_device(store(), "another"), "c"), "gy", "y");
+  EXPECT_EQ(*store().axes_with_results(device.id, "angular_rate"), (std::vector<std::string>{"x", "z"}));
+  EXPECT_TRUE(store().axes_with_results(device.id, "specific_force")->empty());
+  recording.metadata_json = R"({"rate_hz":1})";
+  ASSERT_TRUE(store().revise_recording(recording, 1));
+  EXPECT_TRUE(store().axes_with_results(device.id, "angular_rate")->empty());
 }
 
 TEST_P(ResultStore, LatestResultsComeByConditionRecordingAndChannel) {
