@@ -75,14 +75,17 @@ const COLOURS = {type: 'rule', values: ['color-contrast', 'link-in-text-block']}
 
 test('axe finds nothing on any page, light or dark', async () => {
   const page = await open(browser, daemon, '/', {colorScheme: 'light', absent: NOBODY});
+  const background = () => getComputedStyle(document.body).backgroundColor;
   const faults = [];
   for (const [name, path] of Object.entries(paths)) {
     await page.emulateMedia({colorScheme: 'light'});
     await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
     await settled(page);
     faults.push(...(await accessibilityFaults(page)).map(fault => `${name}: ${fault}`));
+    const lit = await page.evaluate(background);
     await page.emulateMedia({colorScheme: 'dark'});
     await page.evaluate(() => Promise.all(document.getAnimations().filter(animation => animation instanceof CSSTransition).map(animation => animation.finished.catch(() => {}))));
+    assert.notEqual(await page.evaluate(background), lit, `${name} becomes dark`);
     faults.push(...(await accessibilityFaults(page, COLOURS)).map(fault => `${name}, dark: ${fault}`));
   }
   assert.deepEqual(faults, []);
