@@ -41,16 +41,17 @@ void note_request(Metrics& metrics, BadStates& states, const AccessRecord& recor
     note_failure(states, *record.failure, Json{{"request_id", record.request_id}, {"route", record.route}});
   }
   metrics.count_request(record.method, record.route, record.status, record.seconds, record.bytes_in, record.bytes_out);
-  log_info("request", Json{{"method", record.method},
-                           {"route", record.route},
-                           {"target", record.target},
-                           {"status", record.status},
-                           {"bytes_in", record.bytes_in},
-                           {"bytes_out", record.bytes_out},
-                           {"seconds", record.seconds},
-                           {"request_id", record.request_id},
-                           {"address", record.address},
-                           {"token", record.token.empty() ? Json(nullptr) : Json(record.token)}});
+  log_info("request", LogFields()
+                          .text("method", record.method)
+                          .text("route", record.route)
+                          .text("target", record.target)
+                          .count("status", static_cast<std::uint64_t>(record.status))
+                          .count("bytes_in", record.bytes_in)
+                          .count("bytes_out", record.bytes_out)
+                          .number("seconds", record.seconds)
+                          .text("request_id", record.request_id)
+                          .text("address", record.address)
+                          .text_or_null("token", record.token));
 }
 
 }  // namespace driftlab::server

@@ -111,8 +111,10 @@ Result<Response> get_schema(const Request& request) {
 }  // namespace
 
 void add_watch_routes(Router& router, ApiContext& context) {
-  Route health{"GET", "/healthz", "health", {}, Handler([&](const Request&) -> Result<Response> {
-                 return json_response(200, Json{{"status", "alive"}, {"version", context.version}});
+  Response alive = json_response(200, Json{{"status", "alive"}, {"version", context.version}});
+  alive.headers.emplace_back("ETag", content_etag(alive));
+  Route health{"GET", "/healthz", "health", {}, Handler([alive = std::move(alive)](const Request&) -> Result<Response> {
+                 return alive;
                })};
   health.instant = true;
   router.add(std::move(health));

@@ -9,8 +9,12 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -76,17 +80,41 @@ std::shared_ptr<spdlog::details::thread_pool>& writer() {
   return pool;
 }
 
-void write(spdlog::level::level_enum level, std::string_view name, std::string_view event, const Json& fields) {
+/// Text as JSON: as it stands between its quotes where nothing in it needs an escape, as hardly anything does.
+void append_quoted(std::string& line, std::string_view text) {
+  const bool plain = std::ranges::all_of(text, [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; });
+  if (!plain) {
+    line += to_text(Json(std::string(text)));
+    return;
+  }
+  line += '"';
+  line += text;
+  line += '"';
+}
+
+/// `members` are those of an object, without its braces.
+void write(spdlog::level::level_enum level, std::string_view name, std::string_view event, std::string_view members) {
   const auto logger = spdlog::default_logger();
   if (!logger || !logger->should_log(level)) {
     return;
   }
-  std::string line = to_text(Json{{"time", rfc3339(SystemClock().now())}, {"level", name}, {"event", event}});
-  if (!fields.empty()) {
-    line.back() = ',';
-    line += std::string_view(to_text(fields)).substr(1);  // the members of one object after those of the other
+  std::string line = "{\"time\":\"" + rfc3339(SystemClock().now()) + "\",\"level\":\"";
+  line.reserve(line.size() + event.size() + members.size() + 64);
+  line += name;
+  line += "\",\"event\":";
+  append_quoted(line, event);
+  if (!members.empty()) {
+    line += ',';
+    line += members;
   }
+  line += '}';
   logger->log(level, line);
+}
+
+void write_document(spdlog::level::level_enum level, std::string_view name, std::string_view event,
+                    const Json& fields) {
+  const std::string object = to_text(fields);
+  write(level, name, event, std::string_view(object).substr(1, object.size() - 2));
 }
 
 }  // namespace
@@ -116,8 +144,54 @@ void stop_log() {
   spdlog::shutdown();
 }
 
-void log_info(std::string_view event, const Json& fields) { write(spdlog::level::info, "info", event, fields); }
-void log_warning(std::string_view event, const Json& fields) { write(spdlog::level::warn, "warning", event, fields); }
-void log_error(std::string_view event, const Json& fields) { write(spdlog::level::err, "error", event, fields); }
+void LogFields::begin(std::string_view name) {
+  if (!members_.empty()) {
+    members_ += ',';
+  }
+  append_quoted(members_, name);
+  members_ += ':';
+}
+
+LogFields& LogFields::text(std::string_view name, std::string_view value) {
+  begin(name);
+  append_quoted(members_, value);
+  return *this;
+}
+
+LogFields& LogFields::text_or_null(std::string_view name, std::string_view value) {
+  if (!value.empty()) {
+    return text(name, value);
+  }
+  begin(name);
+  members_ += "null";
+  return *this;
+}
+
+LogFields& LogFields::count(std::string_view name, std::uint64_t value) {
+  begin(name);
+  members_ += std::to_string(value);
+  return *this;
+}
+
+LogFields& LogFields::number(std::string_view name, double value) {
+  begin(name);
+  std::array<char, 32> digits{};
+  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  members_ += std::isfinite(value) ? std::string_view(digits.data(), written.ptr) : std::string_view("null");
+  return *this;
+}
+
+void log_info(std::string_view event, const LogFields& fields) {
+  write(spdlog::level::info, "info", event, fields.members());
+}
+void log_info(std::string_view event, const Json& fields) {
+  write_document(spdlog::level::info, "info", event, fields);
+}
+void log_warning(std::string_view event, const Json& fields) {
+  write_document(spdlog::level::warn, "warning", event, fields);
+}
+void log_error(std::string_view event, const Json& fields) {
+  write_document(spdlog::level::err, "error", event, fields);
+}
 
 }  // namespace driftlab::server

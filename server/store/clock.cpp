@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <tuple>
+#include <utility>
 
 namespace driftlab::server {
 namespace {
@@ -19,19 +21,33 @@ constexpr std::size_t kTimeLength = 10;
 /// What follows the time in an id: a number of 80 bits, most significant digit first.
 using Tail = std::array<unsigned char, kBodyLength - kTimeLength>;
 
-Tail random_tail() {
-  Tail tail{};
-  if (RAND_bytes(tail.data(), static_cast<int>(tail.size())) != 1) {
-    std::abort();  // an operating system without randomness cannot give unique names
+/// Random digits, drawn from the operating system for many ids at once: one call for each would cost more than the id.
+/// Not thread safe.
+class Digits {
+ public:
+  Tail next() {
+    if (given_ + kOfOne > drawn_.size()) {
+      if (RAND_bytes(drawn_.data(), static_cast<int>(drawn_.size())) != 1) {
+        std::abort();  // an operating system without randomness cannot give unique names
+      }
+      given_ = 0;
+    }
+    Tail tail{};
+    for (unsigned char& digit : tail) {
+      digit = std::exchange(drawn_[given_++], static_cast<unsigned char>(0)) & 31U;
+    }
+    return tail;
   }
-  std::ranges::for_each(tail, [](unsigned char& digit) { digit &= 31U; });
-  return tail;
-}
+
+ private:
+  static constexpr std::size_t kOfOne = std::tuple_size_v<Tail>;
+  std::array<unsigned char, 64 * kOfOne> drawn_{};
+  std::size_t given_ = drawn_.size();
+};
 
 /// Adds a random step of 1 to 2^30 to a tail: its successor sorts behind it and cannot be guessed.
-void step(Tail& tail) {
+void step(Tail& tail, Tail by) {
   constexpr std::size_t kStepDigits = 6;
-  Tail by = random_tail();
   std::fill(by.begin(), by.end() - kStepDigits, static_cast<unsigned char>(0));
   unsigned carry = 1;
   for (std::size_t i = tail.size(); i-- > 0;) {
@@ -46,12 +62,13 @@ Tail next_tail(std::uint64_t milliseconds) {
   static std::mutex guard;
   static std::uint64_t last_milliseconds = 0;
   static Tail last{};
+  static Digits digits;
   const std::scoped_lock lock(guard);
   if (milliseconds == last_milliseconds) {
-    step(last);
+    step(last, digits.next());
   } else {
     last_milliseconds = milliseconds;
-    last = random_tail();
+    last = digits.next();
     last.front() &= 15U;  // the upper half is room for the steps, which therefore never overflow
   }
   return last;
