@@ -123,7 +123,15 @@ Response Dispatcher::give_kept(const std::string& key, std::uint64_t changes, co
   const auto etag =
       std::find_if(kept.headers.begin(), kept.headers.end(), [](const auto& header) { return header.first == "ETag"; });
   const bool whole = etag == kept.headers.end() || !has_it(request, etag->second);
-  if (!whole || !takes_gzip(request)) {
+  if (!whole) {  // its body, which may be megabytes, is not copied only to be left out
+    Response response;
+    response.status = kept.status;
+    response.content_type = kept.content_type;
+    response.headers = kept.headers;
+    finish(request, response);
+    return response;
+  }
+  if (!takes_gzip(request)) {
     Response response = kept;
     finish(request, response);
     return response;
