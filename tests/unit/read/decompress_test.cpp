@@ -16,8 +16,9 @@ constexpr std::string_view kTable = "gx,gy\n1,2\n3,4\n";
 std::vector<Compression> packed_kinds() { return {Compression::Gzip, Compression::Xz, Compression::Zstd}; }
 
 /// Everything a compressed stream holds, or its error.
-Result<std::string> unpack(Compression kind, std::string_view bytes, const DecodeLimits& limits = {}) {
-  auto reader = make_decompressor(kind, ByteSource(make_memory_reader(bytes)), limits);
+Result<std::string> unpack(Compression kind, std::string_view bytes, const DecodeLimits& limits = {},
+                           std::size_t piece_bytes = std::size_t{1} << 16) {
+  auto reader = make_decompressor(kind, ByteSource(make_memory_reader(bytes, piece_bytes)), limits);
   if (!reader) {
     return fail(reader.error());
   }
@@ -62,6 +63,29 @@ TEST(Decompress, ChecksTheChecksum) {
     packed[at] = static_cast<char>(packed[at] + 1);
     EXPECT_EQ(decode_bytes(packed).error, ErrorCode::CorruptCompression) << name_of(kind);
   }
+}
+
+TEST(Decompress, SaysTheSameOfADamagedStreamHoweverItArrives) {
+  const auto told = [](const Result<std::string>& outcome) { return outcome ? *outcome : outcome.error().message; };
+  const auto same = [&](Compression kind, const std::string& bytes) {
+    const std::string at_once = told(unpack(kind, bytes));
+    for (const std::size_t piece : {1, 13}) {
+      EXPECT_EQ(told(unpack(kind, bytes, {}, piece)), at_once) << name_of(kind) << " in pieces of " << piece;
+    }
+  };
+  for (const Compression kind : packed_kinds()) {
+    const std::string packed = compress(kind, kTable);
+    for (std::size_t at = 0; at < packed.size(); ++at) {
+      for (const int change : {1, 8, 64, 255}) {
+        std::string damaged = packed;
+        damaged[at] = static_cast<char>(static_cast<unsigned char>(damaged[at]) ^ change);
+        same(kind, damaged);
+      }
+    }
+  }
+  // A frame that says it holds 256 bytes, and holds none; behind it lies something else.
+  using namespace std::string_literals;
+  same(Compression::Zstd, "\x28\xB5\x2F\xFD\x40\0\0\0\1\0\0tail"s);
 }
 
 TEST(Decompress, StopsABombAtItsBudget) {
