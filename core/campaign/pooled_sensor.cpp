@@ -22,6 +22,10 @@ struct ReplicateGroup {
   std::map<std::string, StructureScore> scores;
 };
 
+tl::unexpected<Error> cancelled() {
+  return fail(ErrorCode::Cancelled, "Putting the recordings together was cancelled.");
+}
+
 std::vector<ReplicateGroup> group_by_condition(const std::vector<TableSource>& sources) {
   std::vector<ReplicateGroup> groups;
   for (const TableSource& source : sources) {
@@ -124,10 +128,13 @@ void take_known_fits(ReplicateGroup& group, std::span<const PooledSensor> previo
 }
 
 /// Fills fits and scores of a group: what is known, and joint fits of the rest.
-Status fit_group(ReplicateGroup& group, const std::vector<std::string>& models,
-                 std::span<const PooledSensor> previous) {
+Status fit_group(ReplicateGroup& group, const std::vector<std::string>& models, std::span<const PooledSensor> previous,
+                 const RunControl& control) {
   take_known_fits(group, previous);
   for (const std::string& model : models) {
+    if (control.stop.stop_requested()) {
+      return cancelled();
+    }
     auto fit = group.fits.find(model);
     if (fit == group.fits.end()) {
       auto joint = joint_fit(group, model);
@@ -197,7 +204,8 @@ PooledCondition conclude(ReplicateGroup& group) {
 }
 
 /// Ranks the structures over all conditions, and gives the fits that are shown their profile intervals.
-Status choose_model(std::vector<ReplicateGroup>& groups, const std::vector<std::string>& models, PooledSensor& pooled) {
+Status choose_model(std::vector<ReplicateGroup>& groups, const std::vector<std::string>& models, PooledSensor& pooled,
+                    const RunControl& control) {
   if (models.empty()) {
     return {};
   }
@@ -218,6 +226,9 @@ Status choose_model(std::vector<ReplicateGroup>& groups, const std::vector<std::
   pooled.structure = told_structure(choice, models, labels);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const std::string& model : {models[choice.by_condition[g]], pooled.model}) {
+      if (control.stop.stop_requested()) {
+        return cancelled();
+      }
       if (auto sharpened = sharpen(groups[g], model); !sharpened) {
         return sharpened;
       }
@@ -259,15 +270,15 @@ Result<PooledSensor> pool_sensor(const std::vector<TableSource>& sources, std::s
   std::size_t done = 0;
   for (ReplicateGroup& group : groups) {
     if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "Putting the recordings together was cancelled.");
+      return cancelled();
     }
     control.report("joint fit: " + label(group.told.condition),
                    static_cast<double>(done++) / static_cast<double>(groups.size()));
-    if (auto fitted = fit_group(group, models, previous); !fitted) {
+    if (auto fitted = fit_group(group, models, previous, control); !fitted) {
       return fail(fitted.error());
     }
   }
-  if (auto chosen = choose_model(groups, models, pooled); !chosen) {
+  if (auto chosen = choose_model(groups, models, pooled, control); !chosen) {
     return fail(chosen.error());
   }
   for (ReplicateGroup& group : groups) {

@@ -160,6 +160,14 @@ struct Replicates::Blocks {
     block.moments.samples = static_cast<double>(record.samples);
     block.moments.dt_s = record.dt_s;
     moments.nu.tail(rows) = block.moments.nu;
+    std::size_t like = moments.half.size();
+    for (const Block& before : blocks) {
+      if (before.moments.dt_s == record.dt_s && before.moments.half == block.moments.half) {
+        like = static_cast<std::size_t>(before.first);
+        break;
+      }
+    }
+    moments.stretches.push_back({moments.half.size(), block.moments.half.size(), like});
     moments.half.insert(moments.half.end(), block.moments.half.begin(), block.moments.half.end());
     moments.row_dt_s.insert(moments.row_dt_s.end(), static_cast<std::size_t>(rows), record.dt_s);
     const bool first = blocks.empty();
@@ -169,33 +177,30 @@ struct Replicates::Blocks {
     blocks.push_back(std::move(block));
   }
 
-  /// The stack as one curve: the covariance is block diagonal, for the recordings are independent.
+  /// The stack as one curve.
   [[nodiscard]] CurveCovariance curve() const {
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(moments.nu.size(), moments.nu.size());
+    std::vector<Eigen::MatrixXd> covariance;
     Eigen::VectorXd described(moments.nu.size());
     for (const Block& block : blocks) {
-      const auto rows = block.moments.nu.size();
-      covariance.block(block.first, block.first, rows, rows) = block.covariance;
-      described.segment(block.first, rows) = block.described;
+      covariance.push_back(block.covariance);
+      described.segment(block.first, block.moments.nu.size()) = block.described;
     }
-    return curve_covariance(moments.nu, described, covariance);
+    return curve_covariance(moments.nu, described, BlockDiagonal(std::move(covariance)));
   }
 
   /// Covariance of the stacked variances under one model of all.
-  Eigen::MatrixXd covariance(const Model& model) {
+  BlockDiagonal covariance(const Model& model) {
     std::vector<Eigen::MatrixXd> by_plan;
     by_plan.reserve(plans.size());
     for (SharedPlan& plan : plans) {
       by_plan.push_back(plan.covariance.matrix(model));
     }
-    Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(moments.nu.size(), moments.nu.size());
+    std::vector<Eigen::MatrixXd> stacked;
     for (const Block& block : blocks) {
-      const auto rows = block.moments.nu.size();
-      stacked.block(block.first, block.first, rows, rows) = block.root_inflation.asDiagonal() *
-                                                            by_plan[block.plan](block.scales, block.scales) *
-                                                            block.root_inflation.asDiagonal();
+      stacked.emplace_back(block.root_inflation.asDiagonal() * by_plan[block.plan](block.scales, block.scales) *
+                           block.root_inflation.asDiagonal());
     }
-    return stacked;
+    return BlockDiagonal(std::move(stacked));
   }
 
   [[nodiscard]] Eigen::VectorXd discrepancies() const {

@@ -64,7 +64,7 @@ struct Candidate {
                                         std::span<const Candidate> known = {});
 
 /// Covariance of the wavelet variances under a model [unit^4].
-using CovarianceLaw = std::function<Eigen::MatrixXd(const Model&)>;
+using CovarianceLaw = std::function<BlockDiagonal(const Model&)>;
 
 /// The least distance of a candidate under the covariance of its own fit.
 [[nodiscard]] double distance_under_own(const WaveletMoments& moments, const Candidate& candidate,

@@ -244,7 +244,7 @@ Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& opti
   const CovarianceLaw covariance_of = [&](const Model& model) -> Eigen::MatrixXd {
     return fitted.covariance(plan, model)(rows, rows);
   };
-  const Eigen::MatrixXd covariance = covariance_of(fitted.mixture);
+  const Eigen::MatrixXd covariance = covariance_of(fitted.mixture).whole();
   const CurveCovariance curve = curve_covariance(moments.nu, modelled_variance(moments, fitted.mixture), covariance);
   Result<CandidateSet> set = fit_set(moments, options, sd, curve, covariance_of, control, result.warnings);
   if (!set) {

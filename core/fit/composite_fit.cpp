@@ -98,7 +98,7 @@ CompositeDistance::CompositeDistance(const CompositeBasis& basis, const CurveCov
     : basis_(&basis),
       used_(curve.used),
       y_(curve.log_variance),
-      whitening_(discrepancy_whitening(curve.covariance, delta)),
+      whitening_(discrepancy_whitening(curve.covariance.whole(), delta)),
       delta_(delta) {}
 
 void CompositeDistance::evaluate(const Composite& model, const std::optional<CompositeConstraint>& constraint,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -36,38 +37,52 @@ double log_covariance(const LogTerms& a, const LogTerms& b, double correlation) 
   return sum;
 }
 
+double log_bias(double edf) { return digamma(0.5 * edf) - std::log(0.5 * edf); }
+
 }  // namespace
 
-double CurveCovariance::bias(Eigen::Index j) const { return digamma(0.5 * edf(j)) - std::log(0.5 * edf(j)); }
+double CurveCovariance::bias(Eigen::Index j) const { return log_bias(edf(j)); }
 
 CurveCovariance curve_covariance(const Eigen::VectorXd& nu, const Eigen::VectorXd& described,
-                                 const Eigen::MatrixXd& covariance) {
+                                 const BlockDiagonal& covariance) {
   CurveCovariance curve;
-  for (Eigen::Index j = 0; j < nu.size(); ++j) {
-    if (nu(j) > 0.0) {
-      curve.used.push_back(j);
+  std::vector<double> edf;
+  std::vector<double> log_variance;
+  std::vector<Eigen::MatrixXd> blocks;
+  for (const BlockDiagonal::Block& block : covariance.blocks()) {
+    const Eigen::MatrixXd& own = block.matrix;
+    std::vector<Eigen::Index> used;  // rows of the block
+    for (Eigen::Index j = 0; j < own.rows(); ++j) {
+      if (nu(block.first + j) > 0.0) {
+        used.push_back(j);
+      }
     }
-  }
-  const auto count = static_cast<Eigen::Index>(curve.used.size());
-  curve.log_variance.resize(count);
-  curve.edf.resize(count);
-  curve.covariance.resize(count, count);
-  std::vector<LogTerms> terms;
-  terms.reserve(curve.used.size());
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const Eigen::Index row = curve.used[static_cast<std::size_t>(j)];
-    const double half_edf = described(row) * described(row) / covariance(row, row);  // eta/2 = nu^2/Var
-    curve.edf(j) = 2.0 * half_edf;
-    curve.log_variance(j) = std::log(nu(row)) - curve.bias(j);
-    terms.push_back(log_terms(half_edf));
-    curve.covariance(j, j) = trigamma(half_edf);
-    for (Eigen::Index i = 0; i < j; ++i) {
-      const Eigen::Index other = curve.used[static_cast<std::size_t>(i)];
-      const double correlation = covariance(other, row) / std::sqrt(covariance(other, other) * covariance(row, row));
-      curve.covariance(i, j) = log_covariance(terms[static_cast<std::size_t>(i)], terms.back(), correlation);
-      curve.covariance(j, i) = curve.covariance(i, j);
+    const auto count = static_cast<Eigen::Index>(used.size());
+    Eigen::MatrixXd logarithms(count, count);
+    std::vector<LogTerms> terms;
+    terms.reserve(used.size());
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const Eigen::Index row = used[static_cast<std::size_t>(j)];
+      const Eigen::Index at = block.first + row;
+      const double half_edf = described(at) * described(at) / own(row, row);  // eta/2 = nu^2/Var
+      curve.used.push_back(at);
+      edf.push_back(2.0 * half_edf);
+      log_variance.push_back(std::log(nu(at)) - log_bias(edf.back()));
+      terms.push_back(log_terms(half_edf));
+      logarithms(j, j) = trigamma(half_edf);
+      for (Eigen::Index i = 0; i < j; ++i) {
+        const Eigen::Index other = used[static_cast<std::size_t>(i)];
+        const double correlation = own(other, row) / std::sqrt(own(other, other) * own(row, row));
+        logarithms(i, j) = log_covariance(terms[static_cast<std::size_t>(i)], terms.back(), correlation);
+        logarithms(j, i) = logarithms(i, j);
+      }
     }
+    blocks.push_back(std::move(logarithms));
   }
+  const auto rows = static_cast<Eigen::Index>(edf.size());
+  curve.edf = Eigen::Map<const Eigen::VectorXd>(edf.data(), rows);
+  curve.log_variance = Eigen::Map<const Eigen::VectorXd>(log_variance.data(), rows);
+  curve.covariance = BlockDiagonal(std::move(blocks));
   return curve;
 }
 

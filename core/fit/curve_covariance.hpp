@@ -12,6 +12,8 @@
 /// dictionary processes that describes the curve (core/variance/variance_intervals.hpp) serves for all of them. If each
 /// candidate brought its own, a model that puts too much noise into the long scales would be excused for missing them,
 /// and the distances of nested models would not be ordered.
+#include "core/process/block_diagonal.hpp"
+
 #include <Eigen/Core>
 
 #include <vector>
@@ -21,7 +23,7 @@ namespace driftlab {
 struct CurveCovariance {
   std::vector<Eigen::Index> used;  ///< rows of the curve that take part: those with a positive variance
   Eigen::VectorXd log_variance;    ///< y, one entry per row used
-  Eigen::MatrixXd covariance;      ///< S, rows used x rows used
+  BlockDiagonal covariance;        ///< S, rows used x rows used: a block for each recording
   Eigen::VectorXd edf;             ///< eta, one entry per row used
 
   /// psi(eta_j/2) - ln(eta_j/2): what the logarithm of entry j falls short of ln nu_j on average.
@@ -31,8 +33,9 @@ struct CurveCovariance {
 };
 
 /// `nu` are the estimated variances; `covariance` is that of the estimates under a mixture whose variances are
-/// `described` [unit^2, unit^4], all of one length and in one unit. Rows with nu = 0 take no part. O(rows^2).
+/// `described` [unit^2, unit^4], all of one length and in one unit. Rows with nu = 0 take no part. O(rows^2) in each
+/// block.
 [[nodiscard]] CurveCovariance curve_covariance(const Eigen::VectorXd& nu, const Eigen::VectorXd& described,
-                                               const Eigen::MatrixXd& covariance);
+                                               const BlockDiagonal& covariance);
 
 }  // namespace driftlab

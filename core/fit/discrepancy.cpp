@@ -60,7 +60,8 @@ double falling_root(const std::function<double(double)>& value, double first) {
 }  // namespace
 
 double WhitenedCurve::distance(const Eigen::VectorXd& modelled) const {
-  return (whitening * (curve.log_variance.array() - modelled.array().log()).matrix()).squaredNorm();
+  const Eigen::VectorXd residual = curve.log_variance.array() - modelled.array().log();
+  return (whitening * residual).squaredNorm();
 }
 
 WhitenedCurve whitened(CurveCovariance curve, double delta) {
@@ -71,9 +72,9 @@ WhitenedCurve whitened(CurveCovariance curve, double delta) {
 WhitenedCurve whitened(CurveCovariance curve, const Eigen::VectorXd& delta) {
   WhitenedCurve result;
   result.delta = delta.size() > 0 ? delta.maxCoeff() : 0.0;
-  result.scatter = curve.covariance;
-  result.scatter.diagonal() += delta.cwiseAbs2();
-  result.whitening = discrepancy_whitening(result.scatter, 0.0);
+  result.scatter = curve.covariance.raised(delta.cwiseAbs2());
+  result.whitening = result.scatter.each(
+      [](const BlockDiagonal::Block& block) -> Eigen::MatrixXd { return discrepancy_whitening(block.matrix, 0.0); });
   result.curve = std::move(curve);
   return result;
 }
@@ -81,13 +82,20 @@ WhitenedCurve whitened(CurveCovariance curve, const Eigen::VectorXd& delta) {
 Eigen::MatrixXd discrepancy_whitening(const Eigen::MatrixXd& covariance, double delta) {
   Eigen::MatrixXd sum = covariance;
   sum.diagonal().array() += delta * delta;
-  return MomentWeights::from_covariance(sum).whitening;
+  return MomentWeights::from_covariance(sum).whitening();
 }
 
-double discrepancy_of(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance, double dof) {
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  const Eigen::ArrayXd squares = (eigen.vectors.transpose() * residual).array().square();
-  const Eigen::ArrayXd values = eigen.values.array().max(1e-16 * eigen.values.maxCoeff());
+double discrepancy_of(const Eigen::VectorXd& residual, const BlockDiagonal& covariance, double dof) {
+  Eigen::ArrayXd squares(residual.size());
+  Eigen::ArrayXd values(residual.size());
+  for (const BlockDiagonal::Block& block : covariance.blocks()) {
+    const Eigen::Index rows = block.matrix.rows();
+    const SymmetricEigen eigen = symmetric_eigen(block.matrix);
+    squares.segment(block.first, rows) =
+        (eigen.vectors.transpose() * residual.segment(block.first, rows)).array().square();
+    values.segment(block.first, rows) = eigen.values.array();
+  }
+  values = values.max(1e-16 * values.maxCoeff()).eval();
   const auto excess = [&](double delta) { return (squares / (values + delta * delta)).sum() - dof; };
   if (!(excess(0.0) > 0.0)) {
     return 0.0;
@@ -103,12 +111,10 @@ double find_discrepancy(const std::function<double(double)>& distance, double do
   return falling_root([&](double delta) { return std::log(distance(delta) / dof); }, first);
 }
 
-Eigen::MatrixXd sandwich_covariance(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& whitening,
-                                    const Eigen::MatrixXd& scatter) {
-  const Eigen::MatrixXd slope = whitening * jacobian;
+Eigen::MatrixXd sandwich_covariance(const Eigen::MatrixXd& slope, const BlockDiagonal& scatter) {
   const SymmetricEigen eigen = symmetric_eigen(slope.transpose() * slope);
-  const Eigen::MatrixXd loading = whitening.transpose() * slope * eigen.vectors;
-  Eigen::MatrixXd middle = loading.transpose() * scatter * loading;
+  const Eigen::MatrixXd loading = slope * eigen.vectors;
+  Eigen::MatrixXd middle = loading.transpose() * (scatter * loading);
   for (Eigen::Index e = 0; e < middle.rows(); ++e) {
     const double value = eigen.values(e);
     middle.row(e) /= std::max(value, kUndetermined);

@@ -24,9 +24,9 @@ namespace driftlab {
 /// A curve with the weights of the distance L.
 struct WhitenedCurve {
   CurveCovariance curve;
-  double delta = 0.0;         ///< the largest, where the rows of several recordings have each their own
-  Eigen::MatrixXd scatter;    ///< S + delta^2 I
-  Eigen::MatrixXd whitening;  ///< W with W' W = scatter^-1, lower triangular
+  double delta = 0.0;       ///< the largest, where the rows of several recordings have each their own
+  BlockDiagonal scatter;    ///< S + delta^2 I
+  BlockDiagonal whitening;  ///< W with W' W = scatter^-1, lower triangular
 
   /// L of a model whose wavelet variances [unit^2] at the rows used are `modelled`, which must be positive.
   [[nodiscard]] double distance(const Eigen::VectorXd& modelled) const;
@@ -41,17 +41,16 @@ struct WhitenedCurve {
 [[nodiscard]] Eigen::MatrixXd discrepancy_whitening(const Eigen::MatrixXd& covariance, double delta);
 
 /// The delta at which r' (covariance + delta^2 I)^-1 r equals `dof` for a given residual: 0 where it is less already.
-/// `dof` must be positive. O(rows^3).
-[[nodiscard]] double discrepancy_of(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance, double dof);
+/// `dof` must be positive. O(rows^3) in each block.
+[[nodiscard]] double discrepancy_of(const Eigen::VectorXd& residual, const BlockDiagonal& covariance, double dof);
 
 /// The delta at which `distance`, the least L of a model as a function of delta, equals `dof`, to 1 % of delta: 0 where
 /// distance(0) <= dof. Some ten evaluations, at falling and rising values; `first` is a guess.
 [[nodiscard]] double find_discrepancy(const std::function<double(double delta)>& distance, double dof, double first);
 
-/// Covariance of coordinates fitted by least |W (y - f)|, where f has the derivatives `jacobian` (rows x coordinates)
-/// and the error of y has the covariance `scatter`: (D'W'WD)^-1 D'W'W C W'W D (D'W'WD)^-1, and (D'W'WD)^-1 where W
-/// whitens C. Coordinates that the data do not determine get a variance of 10^14 and more.
-[[nodiscard]] Eigen::MatrixXd sandwich_covariance(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& whitening,
-                                                  const Eigen::MatrixXd& scatter);
+/// Covariance of coordinates fitted by least |W (y - f)|, where W f has the derivatives D = `slope` (rows x
+/// coordinates) and the error of W y has the covariance C = `scatter`: (D'D)^-1 D' C D (D'D)^-1, and (D'D)^-1 where W
+/// whitens the error. Coordinates that the data do not determine get a variance of 10^14 and more.
+[[nodiscard]] Eigen::MatrixXd sandwich_covariance(const Eigen::MatrixXd& slope, const BlockDiagonal& scatter);
 
 }  // namespace driftlab

@@ -80,11 +80,10 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
 
 /// What y is taken to scatter with about a fit: S, the discrepancy of all candidates, and what the fit's own exceeds it
 /// by.
-Eigen::MatrixXd scatter_about(const LogFit& fit, double discrepancy) {
+BlockDiagonal scatter_about(const LogFit& fit, double discrepancy) {
   const WhitenedCurve& curve = fit.curve();
-  Eigen::MatrixXd scatter = curve.scatter;
-  scatter.diagonal().array() += std::max(0.0, discrepancy * discrepancy - curve.delta * curve.delta);
-  return scatter;
+  const double more = std::max(0.0, discrepancy * discrepancy - curve.delta * curve.delta);
+  return curve.scatter.raised(Eigen::VectorXd::Constant(curve.scatter.rows(), more));
 }
 
 std::vector<FittedProcess> report_with(Candidate& candidate, double unit, IntervalMethod method,

@@ -29,7 +29,7 @@ std::span<double> entries(Eigen::VectorXd& vector) { return {vector.data(), stat
 class Search {
  public:
   Search(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights)
-      : moments_(moments), structure_(structure), whitening_(weights.whitening), target_(whitening_ * moments.nu) {
+      : moments_(moments), structure_(structure), weights_(weights), target_(weights.whitened(moments.nu)) {
     for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
       for (std::size_t shape = 0; shape < structure.kinds[k]->shape_count(); ++shape) {
         const auto [low, high] = structure.kinds[k]->shape_range(shape, moments.dt_s, moments.samples);
@@ -65,7 +65,7 @@ class Search {
     const ProcessKind* kind = structure_.kinds[k];
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
     curve_of(*kind, {p.data(), kind->parameters.size()}, moments_, entries(raw));
-    return whitening_ * raw;
+    return weights_.whitened(raw);
   }
 
   /// d column / d log_shape of slot s.
@@ -79,7 +79,7 @@ class Search {
     for (std::size_t j = 0; j < moments_.half.size(); ++j) {
       raw(static_cast<Eigen::Index>(j)) = gradient[j * count + slots_[s].parameter] * p[slots_[s].parameter];
     }
-    return whitening_ * raw;
+    return weights_.whitened(raw);
   }
 
   [[nodiscard]] Eigen::MatrixXd design(const Eigen::VectorXd& log_shapes) const {
@@ -105,7 +105,7 @@ class Search {
  private:
   const WaveletMoments& moments_;
   const ModelStructure& structure_;
-  const Eigen::MatrixXd& whitening_;
+  const MomentWeights& weights_;
   Eigen::VectorXd target_;
   Eigen::MatrixXd fixed_;
   std::vector<ShapeSlot> slots_;
@@ -312,23 +312,35 @@ void sort_repeats(Model& model) {
 }
 
 MomentWeights MomentWeights::from_sd(const Eigen::VectorXd& sd) {
-  return {Eigen::MatrixXd(sd.cwiseInverse().asDiagonal())};
+  MomentWeights weights;
+  weights.diagonal_ = sd.cwiseInverse();
+  return weights;
 }
 
 MomentWeights MomentWeights::from_covariance(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = sd.cwiseInverse();
   const Eigen::MatrixXd correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  MomentWeights weights;
   for (double ridge = 0.0;; ridge = ridge == 0.0 ? 1e-12 : 10.0 * ridge) {
     Eigen::MatrixXd raised = correlation;
     raised.diagonal().array() += ridge;
     if (const std::optional<Eigen::MatrixXd> whitening = inverse_cholesky(raised)) {
-      return {*whitening * inverse.asDiagonal()};
+      weights.whole_ = *whitening * inverse.asDiagonal();
+      return weights;
     }
     if (ridge > 1.0) {  // not a covariance at all: what is not finite in it is left to the fit to report
       return from_sd(sd);
     }
   }
+}
+
+Eigen::VectorXd MomentWeights::whitened(const Eigen::VectorXd& v) const {
+  return diagonal_.size() > 0 ? Eigen::VectorXd(diagonal_.cwiseProduct(v)) : Eigen::VectorXd(whole_ * v);
+}
+
+Eigen::MatrixXd MomentWeights::whitening() const {
+  return diagonal_.size() > 0 ? Eigen::MatrixXd(diagonal_.asDiagonal()) : whole_;
 }
 
 Model GmwmSolution::active() const {
@@ -351,14 +363,20 @@ void curve_of(const ProcessKind& kind, std::span<const double> parameters, const
               std::span<double> variance, std::span<double> gradient) {
   const std::size_t count = parameters.size();
   const std::span<const double> half(moments.half);
-  for (std::size_t from = 0; from < half.size();) {  // rows of one sample interval together
-    std::size_t to = from + 1;
-    while (to < half.size() && moments.dt_at(to) == moments.dt_at(from)) {
-      ++to;
+  const WaveletMoments::Stretch whole{0, half.size(), 0};
+  const std::span<const WaveletMoments::Stretch> stretches =
+      moments.stretches.empty() ? std::span(&whole, 1) : std::span(moments.stretches);
+  for (const auto& [first, rows, like] : stretches) {
+    const std::span<double> slopes = gradient.empty() ? gradient : gradient.subspan(first * count, rows * count);
+    if (like == first) {
+      kind.haar_curve(parameters, half.subspan(first, rows), moments.dt_at(first), variance.subspan(first, rows),
+                      slopes);
+      continue;
     }
-    kind.haar_curve(parameters, half.subspan(from, to - from), moments.dt_at(from), variance.subspan(from, to - from),
-                    gradient.empty() ? gradient : gradient.subspan(from * count, (to - from) * count));
-    from = to;
+    std::ranges::copy(variance.subspan(like, rows), variance.subspan(first, rows).begin());
+    if (!gradient.empty()) {
+      std::ranges::copy(gradient.subspan(like * count, rows * count), slopes.begin());
+    }
   }
 }
 

@@ -25,17 +25,33 @@ struct WaveletMoments {
   double dt_s = 0.0;                  ///< of the finest recording
   std::vector<double> row_dt_s = {};  ///< sample interval of each entry of a stack; empty: dt_s throughout
 
+  /// Consecutive rows that have the half lengths and sample interval of those that begin at `like`, at or before them.
+  struct Stretch {
+    std::size_t first = 0;
+    std::size_t rows = 0;
+    std::size_t like = 0;
+  };
+  /// The recordings of a stack: what a model implies is the same for all of one kind. Empty: one recording.
+  std::vector<Stretch> stretches = {};
+
   [[nodiscard]] double dt_at(std::size_t row) const { return row_dt_s.empty() ? dt_s : row_dt_s[row]; }
 };
 
-/// W = whitening' whitening.
-struct MomentWeights {
-  Eigen::MatrixXd whitening;
-
+/// The weights W = A'A of the estimator, by the A that they are applied with.
+class MomentWeights {
+ public:
   /// W = diag(1/sd^2).
   [[nodiscard]] static MomentWeights from_sd(const Eigen::VectorXd& sd);
   /// W = covariance^-1; where rounding leaves the matrix indefinite its diagonal is raised until it is not.
   [[nodiscard]] static MomentWeights from_covariance(const Eigen::MatrixXd& covariance);
+
+  /// A v.
+  [[nodiscard]] Eigen::VectorXd whitened(const Eigen::VectorXd& v) const;
+  [[nodiscard]] Eigen::MatrixXd whitening() const;
+
+ private:
+  Eigen::VectorXd diagonal_;  ///< of a diagonal A; empty: `whole_`
+  Eigen::MatrixXd whole_;
 };
 
 struct GmwmSolution {

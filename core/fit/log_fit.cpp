@@ -184,14 +184,10 @@ Eigen::VectorXd LogFit::residual() const {
   return residual;
 }
 
-Eigen::VectorXd LogFit::sandwich(const Eigen::MatrixXd& scatter) const {
+Eigen::VectorXd LogFit::sandwich(const BlockDiagonal& scatter) const {
   Eigen::MatrixXd whitened_slope;
   evaluate(best_, nullptr, &whitened_slope);
-  const Eigen::MatrixXd whitened_scatter = curve_->whitening * scatter * curve_->whitening.transpose();
-  const auto rows = whitened_slope.rows();
-  return sandwich_covariance(whitened_slope, Eigen::MatrixXd::Identity(rows, rows), whitened_scatter)
-      .diagonal()
-      .cwiseSqrt();
+  return sandwich_covariance(whitened_slope, curve_->whitening.around(scatter)).diagonal().cwiseSqrt();
 }
 
 double LogFit::constrained(std::size_t k, double value, Eigen::VectorXd& warm) const {

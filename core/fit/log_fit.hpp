@@ -50,7 +50,7 @@ class LogFit {
 
   /// Standard errors of the coordinates if y scatters with `scatter` about the model (sandwich_covariance): the fast
   /// preview. Some 10^7 where the data do not determine one.
-  [[nodiscard]] Eigen::VectorXd sandwich(const Eigen::MatrixXd& scatter) const;
+  [[nodiscard]] Eigen::VectorXd sandwich(const BlockDiagonal& scatter) const;
   /// The same with the scatter that L is whitened by.
   [[nodiscard]] Eigen::VectorXd sandwich() const { return sandwich(curve_->scatter); }
 

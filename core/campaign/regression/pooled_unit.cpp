@@ -171,7 +171,7 @@ SessionCurve merge(const Grid& grid, const Pool& pool, Plans& plans, const std::
       raise(j) = std::sqrt(curve.record.inflation[static_cast<std::size_t>(j)]);
     }
     const CurveCovariance own =
-        curve_covariance(described, described, raise.asDiagonal() * complete * raise.asDiagonal());
+        curve_covariance(described, described, Eigen::MatrixXd(raise.asDiagonal() * complete * raise.asDiagonal()));
     for (std::size_t i = 0; i < curve.rows.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(curve.rows[i]);
       const auto scale = static_cast<Eigen::Index>(curve.scales[i]);
@@ -185,7 +185,7 @@ SessionCurve merge(const Grid& grid, const Pool& pool, Plans& plans, const std::
       for (std::size_t k = 0; k < curve.rows.size(); ++k) {
         merged.sampling(row, static_cast<Eigen::Index>(curve.rows[k])) +=
             own.edf(scale) * own.edf(static_cast<Eigen::Index>(curve.scales[k])) *
-            own.covariance(scale, static_cast<Eigen::Index>(curve.scales[k]));
+            own.covariance.whole()(scale, static_cast<Eigen::Index>(curve.scales[k]));
       }
     }
   }

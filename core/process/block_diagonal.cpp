@@ -1,0 +1,62 @@
+#include "core/process/block_diagonal.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace driftlab {
+
+BlockDiagonal::BlockDiagonal(const Eigen::MatrixXd& whole) : rows_(whole.rows()) { blocks_.push_back({0, whole}); }
+
+BlockDiagonal::BlockDiagonal(std::vector<Eigen::MatrixXd> blocks) {
+  blocks_.reserve(blocks.size());
+  for (Eigen::MatrixXd& block : blocks) {
+    const Eigen::Index rows = block.rows();
+    blocks_.push_back({rows_, std::move(block)});
+    rows_ += rows;
+  }
+}
+
+Eigen::VectorXd BlockDiagonal::operator*(const Eigen::VectorXd& vector) const {
+  Eigen::VectorXd product(rows_);
+  for (const Block& block : blocks_) {
+    const Eigen::Index rows = block.matrix.rows();
+    product.segment(block.first, rows).noalias() = block.matrix * vector.segment(block.first, rows);
+  }
+  return product;
+}
+
+Eigen::MatrixXd BlockDiagonal::operator*(const Eigen::MatrixXd& matrix) const {
+  Eigen::MatrixXd product(rows_, matrix.cols());
+  for (const Block& block : blocks_) {
+    const Eigen::Index rows = block.matrix.rows();
+    product.middleRows(block.first, rows).noalias() = block.matrix * matrix.middleRows(block.first, rows);
+  }
+  return product;
+}
+
+BlockDiagonal BlockDiagonal::each(const std::function<Eigen::MatrixXd(const Block&)>& change) const {
+  BlockDiagonal changed;
+  changed.rows_ = rows_;
+  changed.blocks_.reserve(blocks_.size());
+  for (const Block& block : blocks_) {
+    changed.blocks_.push_back({block.first, change(block)});
+  }
+  return changed;
+}
+
+BlockDiagonal BlockDiagonal::raised(const Eigen::VectorXd& by) const {
+  BlockDiagonal sum = *this;
+  for (Block& block : sum.blocks_) {
+    block.matrix.diagonal() += by.segment(block.first, block.matrix.rows());
+  }
+  return sum;
+}
+
+BlockDiagonal BlockDiagonal::around(const BlockDiagonal& middle) const {
+  std::size_t next = 0;
+  return each([&](const Block& outer) -> Eigen::MatrixXd {
+    return outer.matrix * middle.blocks_[next++].matrix * outer.matrix.transpose();
+  });
+}
+
+}  // namespace driftlab
