@@ -83,8 +83,8 @@ class Pool final : public JobKind {
 
   /// Measured (tests/RELIABILITY.md): what the results of each member hold, and the joint fits over all of them.
   [[nodiscard]] JobCost cost(const Json& request, JobContext& /*context*/) const override {
-    constexpr std::int64_t kBytesPerMember = std::int64_t{1} << 20;
-    constexpr double kSecondsPerMember = 0.05;
+    constexpr std::int64_t kBytesPerMember = std::int64_t{1} << 19;
+    constexpr double kSecondsPerMember = 0.02;
     const auto members = static_cast<std::int64_t>(request["inputs"]["members"].size());
     return {JobCost{}.memory_bytes + kBytesPerMember * members, kSecondsPerMember * static_cast<double>(members)};
   }
