@@ -3,9 +3,10 @@
 
 usage: job_memory.py [--only WORDS]      (DRIFTLABD is the daemon; about eight minutes)
 
-Each job runs by itself in a daemon that has begun anew on a folder with its recordings, with one worker. Measured is the largest RssAnon of the daemon
-while the job runs, read every 5 ms, above that before it was asked for; the columns stay in their mapped file. What is expected comes from
-the refusal of the same job by a daemon whose jobs may take next to nothing; for what is pooled it is that of the last recording's own job.
+Each job runs by itself in a daemon that has begun anew on a folder with its recordings, with one worker. Measured is the largest
+RssAnon of the daemon while the job runs, read every 5 ms, above that before it was asked for; the columns stay in their mapped file.
+What is expected comes from the refusal of the same job by a daemon whose jobs may take next to nothing; for what is pooled it is that
+of the last recording's own job. The time is that of the job, of what is pooled that of the job that pools.
 """
 from __future__ import annotations
 
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +100,7 @@ JOBS: dict[str, Callable[[Daemon], Request]] = {
     "regress, 12 results of 15,000 samples": lambda daemon: regress(daemon, 12),
     "regress, 240 results of 15,000 samples": lambda daemon: regress(daemon, 240),
     "pool, 12 results of 1,000,000 samples": lambda daemon: pool(daemon, 12, 1_000_000),
+    "pool, 40 results of 15,000 samples": lambda daemon: pool(daemon, 40),
     "pool, 240 results of 15,000 samples": lambda daemon: pool(daemon, 240),
     "pool, 1,000 results of 15,000 samples": lambda daemon: pool(daemon, 1000),
     "outage evaluation, 100 runs of the paper's": lambda daemon: outages(daemon, 100),
@@ -112,8 +115,13 @@ def expected_mib(data: Path, request: Request) -> int:
         return int(found[1])
 
 
-def measured(data: Path, request: Request) -> tuple[float, float]:
-    """MiB above those before, and seconds of processor time."""
+def lasted_s(job: Request) -> float:
+    begun, ended = (datetime.fromisoformat(job[when].replace("Z", "+00:00")) for when in ("started_at", "finished_at"))
+    return (ended - begun).total_seconds()
+
+
+def measured(data: Path, request: Request) -> tuple[float, float, float]:
+    """MiB above those before, seconds that the job took, or the one that pooled its result, and seconds of processor time of all."""
     with Daemon(data, arguments=("--workers", "1")) as daemon:
         time.sleep(1.0)  # what its start needed has been given back
         before = daemon.memory_kib("RssAnon")
@@ -130,7 +138,9 @@ def measured(data: Path, request: Request) -> tuple[float, float]:
         while sum(daemon.get("/v1/counts").json["jobs"].values()) > 0:  # what follows from it
             largest = max(largest, daemon.memory_kib("RssAnon") - before)
             time.sleep(0.005)
-        return largest / 1024, processor_s(daemon.process.pid) - used
+        pools = [job for job in daemon.items("/v1/jobs?kind=pool") if job["state"] == "succeeded" and job["started_at"] > ended["finished_at"]]
+        seconds = lasted_s(max(pools, key=lambda job: job["started_at"]) if pools else ended)
+        return largest / 1024, seconds, processor_s(daemon.process.pid) - used
 
 
 def processor_s(process: int) -> float:
@@ -143,7 +153,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--only", default="", help="jobs whose line has these words")
     given = parser.parse_args()
-    print("| job | MiB | expected, MiB | s of processor |\n|---|---|---|---|")
+    print("| job | MiB | expected, MiB | s | s of processor |\n|---|---|---|---|---|")
     for name, prepare in JOBS.items():
         if given.only not in name:
             continue
@@ -153,8 +163,8 @@ def main() -> int:
                 request = prepare(daemon)
                 daemon.terminate()
             expected = expected_mib(data, request)
-            mib, seconds = measured(data, request)
-        print(f"| {name} | {mib:.0f} | {expected} | {seconds:.1f} |", flush=True)
+            mib, seconds, processor = measured(data, request)
+        print(f"| {name} | {mib:.0f} | {expected} | {seconds:.2f} | {processor:.1f} |", flush=True)
     return 0
 
 
