@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stop_token>
+
 namespace driftlab {
 namespace {
 
@@ -55,6 +57,17 @@ TEST(PooledSensor, FitsReplicatesJointlyAndTheTableShowsIt) {
   const ParameterTable averaged = table_of(sources, nullptr);
   EXPECT_EQ(averaged.rows[0].pooling, Pooling::Average);
   EXPECT_NEAR(*averaged.rows[0].cells[0].estimate.value / *joint.value, 1.0, 0.005);
+}
+
+TEST(PooledSensor, EndsBetweenTwoModelsWhenItIsCancelled) {
+  auto sources = two_conditions();
+  sources.pop_back();  // of one condition: no other begins at which it could end
+  std::stop_source stop;
+  RunControl control{stop.get_token(), {}};
+  control.progress = [&](std::string_view, double) { stop.request_stop(); };
+  const auto pooled = pool_sensor(sources, {}, control);
+  ASSERT_FALSE(pooled);
+  EXPECT_EQ(pooled.error().code, ErrorCode::Cancelled);
 }
 
 TEST(PooledSensor, CountsOnlyForExactlyItsResults) {

@@ -79,6 +79,29 @@ TEST(Replicates, RecordingsOfDifferentRatesAndLengthsShareTheirParameters) {
   EXPECT_GT(stack->agreement(joint)->p, 1e-4);
 }
 
+TEST(Replicates, TheOrderOfRecordingsOfTwoKindsDoesNotMatter) {
+  const Model truth = white_and_markov(0.02, 0.05, 0.5);
+  const WaveletRecord fast = record(make(truth, 0.01, 30000, 0), 0.01);
+  const WaveletRecord slow = record(make(truth, 0.04, 8000, 1), 0.04);
+  const WaveletRecord again = record(make(truth, 0.01, 30000, 2), 0.01);
+  std::vector<Model> found;
+  for (const std::vector<WaveletRecord>& order :
+       {std::vector{fast, slow, again}, {fast, again, slow}, {slow, again, fast}}) {
+    auto stack = Replicates::stack(order);
+    const Candidate fit = stack->fit(*parse_model("WN+GM"));
+    ASSERT_NE(fit.log_fit, nullptr);
+    found.push_back(fit.log_fit->model());
+  }
+  for (const Model& other : found) {
+    ASSERT_EQ(other.size(), 2U);
+    for (std::size_t p = 0; p < 2; ++p) {
+      for (std::size_t k = 0; k < other[p].parameters.size(); ++k) {
+        EXPECT_NEAR(other[p].parameters[k] / found[0][p].parameters[k], 1.0, 1e-6) << p << ' ' << k;
+      }
+    }
+  }
+}
+
 TEST(Replicates, DisagreementIsSeen) {
   const auto a = record(make(white_and_markov(0.02, 0.05, 0.5), 0.01, 30000, 0), 0.01);
   const auto b = record(make(white_and_markov(0.022, 0.05, 0.5), 0.01, 30000, 1), 0.01);
