@@ -81,9 +81,9 @@ struct PooledSensor {
 };
 
 /// `previous`: other results of the same axis; conditions with the same members are taken from them. Progress: a stage
-/// per condition. Cost: a joint fit costs about as much as the fits of one recording, and two sets of profile intervals
-/// are computed per condition. Errors: Cancelled; InvalidArgument (no sources; a channel whose variances do not have
-/// the shape they state).
+/// per condition. Cost: a joint fit grows in proportion to its recordings (core/process/block_diagonal.hpp), and two
+/// sets of profile intervals are computed per condition. Errors: Cancelled, polled between models; InvalidArgument (no
+/// sources; a channel whose variances do not have the shape they state).
 [[nodiscard]] Result<PooledSensor> pool_sensor(const std::vector<TableSource>& sources,
                                                std::span<const PooledSensor> previous, const RunControl& control);
 
