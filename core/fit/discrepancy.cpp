@@ -114,7 +114,7 @@ double find_discrepancy(const std::function<double(double)>& distance, double do
 Eigen::MatrixXd sandwich_covariance(const Eigen::MatrixXd& slope, const BlockDiagonal& scatter) {
   const SymmetricEigen eigen = symmetric_eigen(slope.transpose() * slope);
   const Eigen::MatrixXd loading = slope * eigen.vectors;
-  Eigen::MatrixXd middle = loading.transpose() * (scatter * loading);
+  Eigen::MatrixXd middle = scatter.after(loading.transpose()) * loading;
   for (Eigen::Index e = 0; e < middle.rows(); ++e) {
     const double value = eigen.values(e);
     middle.row(e) /= std::max(value, kUndetermined);

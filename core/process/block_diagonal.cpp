@@ -34,6 +34,15 @@ Eigen::MatrixXd BlockDiagonal::operator*(const Eigen::MatrixXd& matrix) const {
   return product;
 }
 
+Eigen::MatrixXd BlockDiagonal::after(const Eigen::MatrixXd& left) const {
+  Eigen::MatrixXd product(left.rows(), rows_);
+  for (const Block& block : blocks_) {
+    const Eigen::Index rows = block.matrix.rows();
+    product.middleCols(block.first, rows).noalias() = left.middleCols(block.first, rows) * block.matrix;
+  }
+  return product;
+}
+
 BlockDiagonal BlockDiagonal::each(const std::function<Eigen::MatrixXd(const Block&)>& change) const {
   BlockDiagonal changed;
   changed.rows_ = rows_;

@@ -33,6 +33,8 @@ class BlockDiagonal {
   [[nodiscard]] Eigen::VectorXd operator*(const Eigen::VectorXd& vector) const;
   /// `matrix` has as many rows as this.
   [[nodiscard]] Eigen::MatrixXd operator*(const Eigen::MatrixXd& matrix) const;
+  /// left A: `left` has as many columns as this has rows.
+  [[nodiscard]] Eigen::MatrixXd after(const Eigen::MatrixXd& left) const;
   /// With each block replaced by what `change` makes of it, which has its size.
   [[nodiscard]] BlockDiagonal each(const std::function<Eigen::MatrixXd(const Block&)>& change) const;
   /// With `by` added to the diagonal: one entry a row.

@@ -35,6 +35,7 @@ TEST(BlockDiagonal, MultipliesLikeTheWholeMatrix) {
   const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(9, 4);
   EXPECT_LT((blocks * vector - whole * vector).norm(), 1e-14);
   EXPECT_LT((blocks * matrix - whole * matrix).norm(), 1e-14);
+  EXPECT_LT((blocks.after(matrix.transpose()) - matrix.transpose() * whole).norm(), 1e-14);
 }
 
 TEST(BlockDiagonal, IsRaisedChangedAndPutAroundAnother) {
