@@ -62,10 +62,12 @@ BlockDiagonal BlockDiagonal::raised(const Eigen::VectorXd& by) const {
 }
 
 BlockDiagonal BlockDiagonal::around(const BlockDiagonal& middle) const {
-  std::size_t next = 0;
-  return each([&](const Block& outer) -> Eigen::MatrixXd {
-    return outer.matrix * middle.blocks_[next++].matrix * outer.matrix.transpose();
-  });
+  BlockDiagonal product = middle;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Eigen::MatrixXd& outer = blocks_[i].matrix;
+    product.blocks_[i].matrix = outer * middle.blocks_[i].matrix * outer.transpose();
+  }
+  return product;
 }
 
 }  // namespace driftlab
