@@ -92,10 +92,14 @@ void append_quoted(std::string& line, std::string_view text) {
   line += '"';
 }
 
+bool is_logged(spdlog::level::level_enum level) {
+  const auto logger = spdlog::default_logger();
+  return logger && logger->should_log(level);
+}
+
 /// `members` are those of an object, without its braces.
 void write(spdlog::level::level_enum level, std::string_view name, std::string_view event, std::string_view members) {
-  const auto logger = spdlog::default_logger();
-  if (!logger || !logger->should_log(level)) {
+  if (!is_logged(level)) {
     return;
   }
   std::string line = "{\"time\":\"" + rfc3339(SystemClock().now()) + "\",\"level\":\"";
@@ -108,11 +112,14 @@ void write(spdlog::level::level_enum level, std::string_view name, std::string_v
     line += members;
   }
   line += '}';
-  logger->log(level, line);
+  spdlog::default_logger()->log(level, line);
 }
 
 void write_document(spdlog::level::level_enum level, std::string_view name, std::string_view event,
                     const Json& fields) {
+  if (!is_logged(level)) {
+    return;
+  }
   const std::string object = to_text(fields);
   write(level, name, event, std::string_view(object).substr(1, object.size() - 2));
 }
