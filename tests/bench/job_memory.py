@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import io
-import os
 import re
 import sys
 import tempfile
@@ -125,7 +124,7 @@ def measured(data: Path, request: Request) -> tuple[float, float, float]:
     with Daemon(data, arguments=("--workers", "1")) as daemon:
         time.sleep(1.0)  # what its start needed has been given back
         before = daemon.memory_kib("RssAnon")
-        used = processor_s(daemon.process.pid)
+        used = daemon.processor_s()
         asked = daemon.post("/v1/jobs", request)
         assert asked.status == 202, asked.describe()
         largest = 0
@@ -140,13 +139,7 @@ def measured(data: Path, request: Request) -> tuple[float, float, float]:
             time.sleep(0.005)
         pools = [job for job in daemon.items("/v1/jobs?kind=pool") if job["state"] == "succeeded" and job["started_at"] > ended["finished_at"]]
         seconds = lasted_s(max(pools, key=lambda job: job["started_at"]) if pools else ended)
-        return largest / 1024, seconds, processor_s(daemon.process.pid) - used
-
-
-def processor_s(process: int) -> float:
-    """Of all its threads, the decoder's processes not among them."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        return largest / 1024, seconds, daemon.processor_s() - used
 
 
 def main() -> int:

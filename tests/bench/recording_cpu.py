@@ -46,12 +46,6 @@ def recording(samples: int, seed: int) -> bytes:
     return (",".join(AXES) + "\n" + "\n".join(",".join(f"{value:.6f}" for value in row) for row in zip(*columns)) + "\n").encode()
 
 
-def cpu_s(process: int) -> float:
-    """User and system time of all threads so far."""
-    fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--minutes", type=float, default=15.0)
@@ -64,14 +58,14 @@ def main() -> int:
     with Daemon(before_exec=lambda: os.sched_setaffinity(0, cores)) as daemon:
         for repeat in range(arguments.repeats + 1):
             content = recording(samples, repeat)
-            before = cpu_s(daemon.process.pid)
+            before = daemon.processor_s()
             uploaded = daemon.upload(content, device=f"bench-{repeat}", condition="static", rate_hz=RATE_HZ, columns=COLUMNS)
             assert uploaded.status == 201, uploaded.describe()
             job = daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"recordings": [uploaded.json["id"]]}, "parameters": {}})
             finished = daemon.finished(job.json["id"])
             assert finished["state"] == "succeeded", finished
             if repeat > 0:
-                seconds.append(cpu_s(daemon.process.pid) - before)
+                seconds.append(daemon.processor_s() - before)
     print(f"{samples} x {len(AXES)} samples: {statistics.median(seconds):.2f} s of CPU from upload to stored fits "
           f"(median of {len(seconds)}, {min(seconds):.2f} to {max(seconds):.2f})")
     return 0
