@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace driftlab::regression {
@@ -62,6 +63,30 @@ Eigen::MatrixXd sampling_of(const Design& design, const Eigen::MatrixXd& weights
     }
   }
   return sum;
+}
+
+/// The squares of a row's weights over their sum, for the sessions of both arms by rising shares: their order in the
+/// design does not matter.
+Eigen::MatrixXd shares_of(const Design& design, const Eigen::MatrixXd& weights) {
+  std::vector<Eigen::Index> compared;
+  for (std::size_t s = 0; s < design.sessions.size(); ++s) {
+    if (takes_part(design.sessions[s], std::nullopt)) {
+      compared.push_back(static_cast<Eigen::Index>(s));
+    }
+  }
+  Eigen::MatrixXd shares = weights(Eigen::all, compared).cwiseAbs2();
+  for (Eigen::Index row = 0; row < shares.rows(); ++row) {
+    if (const double sum = shares.row(row).sum(); sum > 0.0) {
+      shares.row(row) /= sum;
+    }
+  }
+  std::vector<Eigen::Index> order(compared.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::lexicographical_compare(shares.col(a).begin(), shares.col(a).end(), shares.col(b).begin(),
+                                        shares.col(b).end());
+  });
+  return shares(Eigen::all, order);
 }
 
 /// The rows of one unit among those that are tested, as places in the list of tests.
@@ -139,6 +164,7 @@ Contrast make_contrast(const Design& design, const ScatterTerms& terms, const Se
   const Eigen::MatrixXd weights = candidate - base;
   const Eigen::MatrixXd shared = (weights * weights.transpose())(rows, rows);
   const Eigen::VectorXd theta = weighted(design, weights)(rows);
+  contrast.shares = shares_of(design, weights)(rows, Eigen::all);
   contrast.sampling = sampling_of(design, weights)(rows, rows);
   contrast.common = shared.cwiseProduct(terms.common(rows, rows));
   contrast.local = shared.cwiseProduct(terms.local(rows, rows));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -33,20 +34,35 @@ Eigen::MatrixXd root_of(Eigen::MatrixXd a) {
   return root.leftCols(rank);
 }
 
+/// Square of the factor by which a session scatters more or less than others do.
+double session_square(Random& random, int df) {
+  double chi_square = 0.0;
+  for (int i = 0; i < df; ++i) {
+    const double z = random.normal();
+    chi_square += z * z;
+  }
+  return (df - 2.0) / chi_square;
+}
+
+/// h of a difference between two arms with so many sessions in all, equally many in each.
 double student_factor(Random& random, std::size_t sessions, int df) {
   double sum = 0.0;
   for (std::size_t s = 0; s < sessions; ++s) {
-    double chi_square = 0.0;
-    for (int i = 0; i < df; ++i) {
-      const double z = random.normal();
-      chi_square += z * z;
-    }
-    sum += (df - 2.0) / chi_square;
+    sum += session_square(random, df);
   }
   return std::sqrt(sum / static_cast<double>(sessions));
 }
 
-/// The three parts of a draw over all tests, before the factors: columns are draws.
+/// h per test of a scale.
+Eigen::VectorXd student_factors(Random& random, const Eigen::MatrixXd& shares, int df) {
+  Eigen::VectorXd squares(shares.cols());
+  for (double& square : squares) {
+    square = session_square(random, df);
+  }
+  return (shares * squares).cwiseSqrt();
+}
+
+/// The three parts of a draw over the tests of scales, before the factors: columns are draws.
 struct Parts {
   Eigen::MatrixXd sampling;
   Eigen::MatrixXd common;
@@ -63,7 +79,7 @@ Eigen::MatrixXd normal_draws(Random& random, Eigen::Index rows, std::size_t draw
 
 Parts draw_parts(Random& random, const Contrast& contrast, std::size_t draws) {
   const auto part = [&](const Eigen::MatrixXd& covariance) -> Eigen::MatrixXd {
-    const Eigen::MatrixXd root = contrast.combine * root_of(covariance);
+    const Eigen::MatrixXd root = root_of(covariance);
     return root * normal_draws(random, root.cols(), draws);
   };
   Parts parts;
@@ -71,6 +87,15 @@ Parts draw_parts(Random& random, const Contrast& contrast, std::size_t draws) {
   parts.common = part(contrast.common);
   parts.local = part(contrast.local);
   return parts;
+}
+
+/// Draws over all tests, levels made of their scales, in units of `se`.
+Eigen::MatrixXd over_all_tests(const Contrast& contrast, const Eigen::MatrixXd& scales, const Eigen::VectorXd& se) {
+  const Eigen::Index levels = contrast.combine.rows() - scales.rows();
+  Eigen::MatrixXd draws(contrast.combine.rows(), scales.cols());
+  draws.topRows(scales.rows()) = scales;
+  draws.bottomRows(levels).noalias() = contrast.combine.bottomRows(levels) * scales;
+  return se.cwiseInverse().asDiagonal() * draws;
 }
 
 /// The value below which a share `p` of the values lie.
@@ -87,10 +112,6 @@ double quantile_of(std::vector<double>& values, double p) {
 double quantile_of_one(const Eigen::MatrixXd& draws, double p) {
   std::vector<double> all(draws.data(), draws.data() + draws.size());
   return quantile_of(all, p);
-}
-
-std::size_t compared_sessions(const Design& design) {
-  return design.count(Arm::Baseline) + design.count(Arm::Candidate);
 }
 
 bool is_required(const Design& design, const Test& test, const TestSettings& settings) {
@@ -115,15 +136,14 @@ double power_of(const Eigen::MatrixXd& draws, const Eigen::VectorXd& se, const s
 
 }  // namespace
 
-Critical critical_values(const Design& design, const Contrast& contrast, const SessionScatter& scatter,
-                         const TestSettings& settings) {
+Critical critical_values(const Contrast& contrast, const SessionScatter& scatter, const TestSettings& settings) {
   Critical critical;
   if (contrast.tests.empty()) {
     return critical;
   }
   Random random(settings.seed);
   const Parts parts = draw_parts(random, contrast, settings.draws);
-  critical.draws.resize(contrast.theta.size(), static_cast<Eigen::Index>(settings.draws));
+  Eigen::MatrixXd scales(parts.sampling.rows(), parts.sampling.cols());
   std::vector<double> cumulative;
   double sum = 0.0;
   for (std::size_t a = 0; a < kFactors; ++a) {
@@ -132,16 +152,17 @@ Critical critical_values(const Design& design, const Contrast& contrast, const S
       cumulative.push_back(sum);
     }
   }
-  std::vector<double> largest;
-  for (Eigen::Index draw = 0; draw < critical.draws.cols(); ++draw) {
+  for (Eigen::Index draw = 0; draw < scales.cols(); ++draw) {
     const auto place = std::lower_bound(cumulative.begin(), cumulative.end() - 1, random.uniform() * sum);
     const auto cell = static_cast<std::size_t>(place - cumulative.begin());
-    const double h = student_factor(random, compared_sessions(design), settings.session_df);
-    critical.draws.col(draw) = (parts.sampling.col(draw) + h * factor_grid()[cell / kFactors] * parts.common.col(draw) +
-                                h * factor_grid()[cell % kFactors] * parts.local.col(draw))
-                                   .cwiseQuotient(contrast.se);
-    largest.push_back(critical.draws.col(draw).maxCoeff());
+    const Eigen::VectorXd h = student_factors(random, contrast.shares, settings.session_df);
+    scales.col(draw) =
+        parts.sampling.col(draw) + h.cwiseProduct(factor_grid()[cell / kFactors] * parts.common.col(draw) +
+                                                  factor_grid()[cell % kFactors] * parts.local.col(draw));
   }
+  critical.draws = over_all_tests(contrast, scales, contrast.se);
+  std::vector<double> largest(static_cast<std::size_t>(critical.draws.cols()));
+  Eigen::VectorXd::Map(largest.data(), critical.draws.cols()) = critical.draws.colwise().maxCoeff();
   critical.c_max = quantile_of(largest, 1.0 - settings.look_share * (settings.alpha - settings.event_alpha));
   critical.c_1 = quantile_of_one(critical.draws, 1.0 - settings.look_share * settings.alpha);
   return critical;
@@ -194,32 +215,36 @@ Needs what_would_decide(const Design& design, const Contrast& contrast, const Se
   };
   const Eigen::VectorXd sampling = before_all(contrast.sampling);
   const Eigen::VectorXd between = kl * kl * before_all(contrast.common) + ks * ks * before_all(contrast.local);
+  const Eigen::MatrixXd between_parts = kl * parts.common + ks * parts.local;
+  using Tails = std::function<Eigen::VectorXd(Random&)>;
   /// Power with the two covariances so many times as large as they are now.
-  const auto power = [&](double sampling_factor, double between_factor, std::size_t sessions) {
+  const auto power = [&](double sampling_factor, double between_factor, const Tails& tails) {
     const Eigen::VectorXd se = (sampling_factor * sampling + between_factor * between).cwiseSqrt();
-    Random tails(settings.seed, 2);
-    Eigen::MatrixXd draws(se.size(), static_cast<Eigen::Index>(kDesignDraws));
-    for (Eigen::Index draw = 0; draw < draws.cols(); ++draw) {
-      const double h = student_factor(tails, sessions, settings.session_df);
-      draws.col(draw) = (std::sqrt(sampling_factor) * parts.sampling.col(draw) +
-                         h * std::sqrt(between_factor) * (kl * parts.common.col(draw) + ks * parts.local.col(draw)))
-                            .cwiseQuotient(se);
+    Random random_tails(settings.seed, 2);
+    Eigen::MatrixXd scales = std::sqrt(sampling_factor) * parts.sampling;
+    for (Eigen::Index draw = 0; draw < scales.cols(); ++draw) {
+      scales.col(draw) += std::sqrt(between_factor) * tails(random_tails).cwiseProduct(between_parts.col(draw));
     }
+    const Eigen::MatrixXd draws = over_all_tests(contrast, scales, se);
     const double c_1 = quantile_of_one(draws, 1.0 - settings.look_share * settings.alpha);
     return power_of(draws, se, contrast.tests, gate.gated, c_1);
   };
+  const Tails as_now = [&](Random& drawn) { return student_factors(drawn, contrast.shares, settings.session_df); };
   const auto n = static_cast<double>(design.count(Arm::Candidate));
   const auto m = static_cast<double>(design.count(Arm::Baseline));
   const double now = 1.0 / n + 1.0 / m;
   for (std::size_t sessions = 1; sessions <= kMostSessions && !needs.sessions_per_arm && !stop.stop_requested();
        ++sessions) {
     const double factor = 2.0 / static_cast<double>(sessions) / now;
-    if (factor < 1.0 && power(factor, factor, 2 * sessions) >= settings.design_power) {
+    const Tails equal_arms = [&](Random& drawn) -> Eigen::VectorXd {
+      return Eigen::VectorXd::Constant(between_parts.rows(), student_factor(drawn, 2 * sessions, settings.session_df));
+    };
+    if (factor < 1.0 && power(factor, factor, equal_arms) >= settings.design_power) {
       needs.sessions_per_arm = sessions;
     }
   }
   for (double longer = 2.0; longer <= kLongestFactor && !needs.length_factor && !stop.stop_requested(); longer *= 2.0) {
-    if (power(1.0 / longer, 1.0, compared_sessions(design)) >= settings.design_power) {
+    if (power(1.0 / longer, 1.0, as_now) >= settings.design_power) {
       needs.length_factor = longer;
     }
   }

@@ -63,7 +63,7 @@ Comparison compare(const Design& design, const TestSettings& settings, const std
   }
   comparison.contrast = make_contrast(design, terms, comparison.scatter);
   const Contrast& contrast = comparison.contrast;
-  const Critical critical = critical_values(design, contrast, comparison.scatter, settings);
+  const Critical critical = critical_values(contrast, comparison.scatter, settings);
   comparison.c_max = critical.c_max;
   comparison.c_1 = critical.c_1;
   comparison.gate = choose_gate(design, contrast, critical, settings);

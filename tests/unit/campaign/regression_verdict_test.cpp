@@ -66,6 +66,26 @@ TEST(RegressionVerdict, DoesNotDependOnTheOrderOfTheSessions) {
   }
 }
 
+/// Where five sessions stand against one, five sixths of what sessions add to the difference are that one's, with its
+/// tails; in arms of equal size each has its part.
+TEST(RegressionVerdict, ASessionThatStandsAloneCountsWithItsTails) {
+  const Rig rig(120.0);
+  Random random(10);
+  regression::Design design = rig.draw(random, 5, 1, 2, unchanged);
+  const regression::ScatterTerms terms = regression::scatter_terms(design);
+  const regression::SessionScatter scatter = regression::learn_scatter(design, terms, 4.0);
+  regression::Contrast contrast = regression::make_contrast(design, terms, scatter);
+  ASSERT_EQ(contrast.shares.cols(), 6);
+  ASSERT_EQ(contrast.shares.rows(), contrast.combine.cols());
+  EXPECT_NEAR((contrast.shares.rowwise().sum().array() - 1.0).abs().maxCoeff(), 0.0, 1e-12);
+  EXPECT_NEAR((contrast.shares.rowwise().maxCoeff().array() - 5.0 / 6.0).abs().maxCoeff(), 0.0, 1e-12);
+  const double alone = regression::critical_values(contrast, scatter, {}).c_max;
+  std::swap(design.sessions.front(), design.sessions[5]);  // the candidate first
+  EXPECT_NEAR(regression::compare(design, {}).c_max, alone, 1e-9);
+  contrast.shares.setConstant(1.0 / 6.0);
+  EXPECT_GT(alone, 1.02 * regression::critical_values(contrast, scatter, {}).c_max);
+}
+
 TEST(RegressionVerdict, LearnsARestlessRigFromItsSessionsAndRestsOnThePriorWithoutThem) {
   const Rig rig(300.0);
   Random random(7);
