@@ -31,6 +31,9 @@ std::size_t median(std::vector<std::size_t> values) {
 void print_shares(Section& section, const Shares& shares) {
   section.print(" %.1f / %.1f / %.1f", shares.percent(shares.pass), shares.percent(shares.inconclusive()),
                 shares.percent(shares.fail));
+  if (shares.wrong_fail != 0 && shares.wrong_fail != shares.fail) {
+    section.print(", wrongly %.1f", shares.percent(shares.wrong_fail));
+  }
 }
 
 }  // namespace
@@ -45,12 +48,15 @@ TEST(Accuracy, RegressionRunsOfOtherLengths) {
     double seconds;
     std::size_t runs;
     std::array<const char*, 3> asked;
+    Scatter scatter = {};
   };
+  constexpr std::array kAskedOfFiveMinutes{"7 / 93 / 0.5", "80 / 20 / 0, 2.6 s", "84 / 17 / 0, 10 s"};
   for (const Length& length :
-       {Length{"5 min", 300.0, 500, {"7 / 93 / 0.5", "80 / 20 / 0, 2.6 s", "84 / 17 / 0, 10 s"}},
+       {Length{"5 min", 300.0, 500, kAskedOfFiveMinutes},
+        Length{"5 min, one factor a rig", 300.0, 500, kAskedOfFiveMinutes, {.one_factor = true}},
         Length{"15 min", 900.0, 100, {"20 / 79 / 1.0", "84 / 16 / 0, 20 s", "91 / 9 / 0, 41 s"}},
         Length{"60 min", 3600.0, 500, {"31 / 68 / 0.7", "71 / 29 / 0, 82 s", "89 / 11 / 0, 164 s"}}}) {
-    const Rig rig(length.seconds);
+    const Rig rig(length.seconds, length.scatter);
     const std::size_t runs = repetitions(length.runs);
     section.print("| %s | %zu |", length.name, runs);
     for (std::size_t plan = 0; plan < 3; ++plan) {
@@ -142,7 +148,7 @@ TEST(Accuracy, RegressionRunsOfRigsOutsideTheAssumption) {
     const Shares shares = run_many(smooth, {n, n, 0}, at_margins, repetitions(500), 123);
     print_shares(section, shares);
     section.print(" (%s) |", kSmoothMargins[plan]);
-    EXPECT_LE(shares.percent(shares.fail), kMostWrong);
+    EXPECT_LE(shares.percent(shares.wrong_fail), kMostWrong);
   }
   section.print("\n");
 }
@@ -171,6 +177,7 @@ TEST(Accuracy, LooksShareTheErrorOfARun) {
         Looked{"white noise of one axis + 20 %", white_noise(rig, 0.2), 150, {"-", "97"}}}) {
     std::size_t pass = 0;
     std::size_t fail = 0;
+    std::size_t wrong_fail = 0;
     const std::size_t runs = repetitions(one.runs);
     for (std::size_t run = 0; run < runs; ++run) {
       Random random(seed, run);
@@ -179,7 +186,9 @@ TEST(Accuracy, LooksShareTheErrorOfARun) {
       for (std::size_t look = 0; look < kSessions.size() && verdict == Verdict::Inconclusive; ++look) {
         regression::TestSettings settings = table_settings();
         settings.look_share = kShares[look];
-        verdict = regression::compare(first_sessions(all, kSessions[look]), settings).verdict;
+        const regression::Comparison comparison = regression::compare(first_sessions(all, kSessions[look]), settings);
+        verdict = comparison.verdict;
+        wrong_fail += blames_wrongly(comparison, rig.rows().rows, one.change) ? 1U : 0U;
       }
       pass += verdict == Verdict::Pass ? 1U : 0U;
       fail += verdict == Verdict::Fail ? 1U : 0U;
@@ -190,7 +199,9 @@ TEST(Accuracy, LooksShareTheErrorOfARun) {
       EXPECT_LE(percent(pass, runs), kMostWrong);
     }
     if (seed == 126) {
-      EXPECT_LE(percent(fail, runs), kMostWrong);
+      EXPECT_LE(percent(wrong_fail, runs), kMostWrong);
+      section.print("| the same, failing for what is within its margin | %zu | - | %.1f (-) |\n", runs,
+                    percent(wrong_fail, runs));
     }
     ++seed;
   }

@@ -19,8 +19,9 @@ namespace driftlab::accuracy {
 
 /// How the sessions of simulated rigs scatter. The defaults are the form that the comparison assumes.
 struct Scatter {
-  double factor_sd = 0.5;  ///< of ln kL and ln kS between rigs
-  double octaves = 1.5;    ///< over which what a session adds to a scale is alike
+  double factor_sd = 0.5;   ///< of ln kL and ln kS between rigs
+  double octaves = 1.5;     ///< over which what a session adds to a scale is alike
+  bool one_factor = false;  ///< kL = kS: a rig is restless in all or in nothing
 };
 
 /// What all axes of a simulated device are made of.
@@ -33,7 +34,7 @@ class Rig {
   static constexpr std::size_t kAxes = 6;
 
   explicit Rig(double duration_s, Scatter scatter = {}, Made made = Made::WhiteFlickerWalk)
-      : factor_sd_(scatter.factor_sd) {
+      : factor_sd_(scatter.factor_sd), one_factor_(scatter.one_factor) {
     model_ = {*make_process("white_noise", {1.0}), *make_process("random_walk", {0.02})};
     std::vector<regression::Level> levels{{"white_noise", "N", 0.0, true}, {"random_walk", "K", std::log(1.5), false}};
     if (made == Made::WhiteFlickerWalk) {
@@ -90,7 +91,7 @@ class Rig {
   };
   [[nodiscard]] Factors draw_factors(Random& random) const {
     const double common = std::exp(factor_sd_ * random.normal());
-    return {common, std::exp(factor_sd_ * random.normal())};
+    return {common, one_factor_ ? common : std::exp(factor_sd_ * random.normal())};
   }
 
   /// What is added to the candidate's rows.
@@ -184,6 +185,7 @@ class Rig {
   }
 
   double factor_sd_;
+  bool one_factor_;
   Model model_;
   Eigen::MatrixXd covariance_;
   Eigen::MatrixXd root_;
@@ -276,15 +278,36 @@ inline Releases draw_releases(const Rig& rig, Random& random, std::size_t releas
   return drawn;
 }
 
+/// Whether a test is found beyond its margin that is not. The change of a level is what the comparison makes of the
+/// changes of its scales: where each scale is at its own margin, a level whose scales have wider margins is beyond its.
+inline bool blames_wrongly(const regression::Comparison& comparison, const std::vector<regression::Row>& rows,
+                           const Rig::Change& change) {
+  const regression::Contrast& contrast = comparison.contrast;
+  Eigen::VectorXd scales(contrast.combine.cols());
+  for (Eigen::Index t = 0; t < scales.size(); ++t) {
+    scales(t) = change(rows[static_cast<std::size_t>(contrast.tests[static_cast<std::size_t>(t)].row)]);
+  }
+  const Eigen::VectorXd truth = contrast.combine * scales;
+  for (std::size_t t = 0; t < contrast.tests.size(); ++t) {
+    if (comparison.outcomes[t].finding == regression::Finding::Beyond &&
+        truth(static_cast<Eigen::Index>(t)) <= contrast.tests[t].margin + 1e-9) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Shares of verdicts.
 struct Shares {
   std::size_t runs = 0;
   std::size_t pass = 0;
   std::size_t fail = 0;
+  std::size_t wrong_fail = 0;  ///< of the fails, those that blame what is within its margin
   std::vector<double> scope_s;
 
-  void add(const regression::Comparison& comparison) {
+  void add(const regression::Comparison& comparison, bool wrongly = false) {
     ++runs;
+    wrong_fail += wrongly ? 1U : 0U;
     pass += comparison.verdict == regression::Verdict::Pass ? 1U : 0U;
     fail += comparison.verdict == regression::Verdict::Fail ? 1U : 0U;
     scope_s.push_back(comparison.gate.scope_s);
@@ -320,8 +343,9 @@ inline Shares run_many(const Rig& rig, const Sessions& sessions, const Rig::Chan
   Shares shares;
   for (std::size_t run = 0; run < runs; ++run) {
     Random random(seed, run);
-    shares.add(regression::compare(
-        rig.draw(random, sessions.baseline, sessions.candidate, sessions.history, change, scale), settings));
+    const regression::Comparison comparison = regression::compare(
+        rig.draw(random, sessions.baseline, sessions.candidate, sessions.history, change, scale), settings);
+    shares.add(comparison, blames_wrongly(comparison, rig.rows().rows, change));
   }
   return shares;
 }

@@ -69,10 +69,14 @@ bool is_hidden_by_flicker(const Case& row, Made made) {
 }
 
 void print_cell(Section& section, const Case& row, std::size_t plan, const Shares& shares, Made made) {
-  section.print(" %.1f / %.1f / %.1f%s |", shares.percent(shares.pass), shares.percent(shares.inconclusive()),
-                shares.percent(shares.fail), asked_text(row.asked[plan]).c_str());
+  section.print(" %.1f / %.1f / %.1f", shares.percent(shares.pass), shares.percent(shares.inconclusive()),
+                shares.percent(shares.fail));
+  if (row.wrong == Wrong::Fail && shares.wrong_fail != shares.fail) {
+    section.print(", wrongly %.1f", shares.percent(shares.wrong_fail));
+  }
+  section.print("%s |", asked_text(row.asked[plan]).c_str());
   if (row.wrong != Wrong::Neither) {
-    const std::size_t wrong = row.wrong == Wrong::Fail ? shares.fail : shares.pass;
+    const std::size_t wrong = row.wrong == Wrong::Fail ? shares.wrong_fail : shares.pass;
     EXPECT_LE(shares.percent(wrong), kMostWrong) << row.name << ", " << kPlans[plan].name;
   } else if (const std::optional<double> fail = row.asked[plan].fail; fail && !is_hidden_by_flicker(row, made)) {
     const double expected = kLeastPower * *fail;
@@ -110,7 +114,7 @@ std::vector<Case> cases_of(const Rig& rig) {
        {{{0.5, {}}, {3.3, {}}, {1.3, {}}, {3.8, {}}, {4.0, {}}}}},
       {"all axes and scales at their margins",
        at_margins,
-       500,
+       1500,
        104,
        Wrong::Fail,
        one_look,
@@ -208,7 +212,7 @@ Naive judge_naively(const regression::Design& design, const regression::ScatterT
   const regression::ScatterTerms none{0.0 * terms.common, 0.0 * terms.local};
   const regression::SessionScatter scatter = regression::learn_scatter(design, none, settings.prior_df);
   const regression::Contrast contrast = regression::make_contrast(design, none, scatter);
-  const regression::Critical critical = regression::critical_values(design, contrast, scatter, settings);
+  const regression::Critical critical = regression::critical_values(contrast, scatter, settings);
   Naive naive;
   for (Eigen::Index t = 0; t < contrast.theta.size(); ++t) {
     const double theta = contrast.theta(t);
@@ -222,8 +226,8 @@ Naive judge_naively(const regression::Design& design, const regression::ScatterT
 
 /// A table of those rows for which `shown` holds, under a heading.
 template <typename Shown>
-void print_table(const char* file, const char* heading, Made made, const Shown& shown) {
-  const Rig rig(900.0, {}, made);
+void print_table(const char* file, const char* heading, Made made, const Shown& shown, Scatter scatter = {}) {
+  const Rig rig(900.0, scatter, made);
   Section section(file);
   section.print("\n## %s\n\n| 15 min | runs |", heading);
   for (const Plan& plan : kPlans) {
@@ -249,7 +253,9 @@ TEST(Accuracy, RegressionRunsAreSeldomWrong) {
       "Regression runs: wrong verdicts\n\nSix axes at 100 Hz, 15 min a session, rigs with ln k ~ N(0, 0.5), sessions "
       "Student t5 by the law of the comparison (core/campaign/regression/session_scatter.hpp), one look. Shares [%] of "
       "runs: pass / inconclusive / fail, and in brackets pass / fail as spec/regression.md asks for. Goals: wrong fail "
-      "and wrong pass at most 5. Seeds 101 to 115.",
+      "and wrong pass at most 5. Where all scales are at their margins, the level of the flicker is beyond its own "
+      "(25 %, where scales above 10 s have 50 %): *wrongly* are the fails that blame something else. Seeds 101 to "
+      "115.",
       Made::WhiteFlickerWalk, [](const Case& row) { return !is_about_power(row); });
 }
 
@@ -272,6 +278,23 @@ TEST(Accuracy, RegressionRunsFindNewProcessesWithoutFlicker) {
         const std::string_view name = row.name;
         return name == "unchanged" || name.starts_with("new ");
       });
+}
+
+/// The specification gives one law for the factors of a rig, and does not say whether each part of the scatter draws
+/// its own. Where both share one, quiet rigs are quiet in all, and an unchanged device passes as often as is asked.
+TEST(Accuracy, RegressionRunsOfRigsWithOneFactor) {
+  print_table(
+      "regression one factor",
+      "Regression runs: one factor a rig\n\nThe same with one factor k of a rig for what its axes share and for what "
+      "each scale has of its own (kL = kS), where the sections before draw two: pass / inconclusive / fail [%], in "
+      "brackets pass / fail as spec/regression.md asks for, which does not say which of the two its rigs were.",
+      Made::WhiteFlickerWalk,
+      [](const Case& row) {
+        const std::string_view name = row.name;
+        return name == "unchanged" || name == "white noise of one axis + 20 %" ||
+               (row.wrong != Wrong::Neither && !name.starts_with("white") && !name.starts_with("unchanged"));
+      },
+      {.one_factor = true});
 }
 
 /// What the comparison is for: rules without sessions fail what nobody changed.
