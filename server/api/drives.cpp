@@ -64,6 +64,17 @@ Result<Response> get_drive(ApiContext& context, const Request& request) {
   return json_response(200, to_json(*drive));
 }
 
+Result<Response> delete_drive(ApiContext& context, const Request& request) {
+  const auto shown = get_drive(context, request);
+  if (!shown) {
+    return fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(context.store.remove_drive(request.parameters[0]));
+}
+
 }  // namespace
 
 void add_drive_routes(Router& router, ApiContext& context) {
@@ -76,6 +87,9 @@ void add_drive_routes(Router& router, ApiContext& context) {
               })});
   router.add({"GET", "/v1/drives/{id}", "getDrive", {}, Handler([&](const Request& request) {
                 return get_drive(context, request);
+              })});
+  router.add({"DELETE", "/v1/drives/{id}", "deleteDrive", {}, Handler([&](const Request& request) {
+                return delete_drive(context, request);
               })});
 }
 

@@ -229,6 +229,10 @@ class VisibleStore final : public Store {
     return whole_.drives(device_id, limited(page));
   }
 
+  Status remove_drive(std::string_view id) override {
+    return if_seen(drive(id), [&] { return whole_.remove_drive(id); });
+  }
+
   Result<CalibrationOutcome> add_calibration(const StoredCalibration& calibration) override {
     if (auto seen = see_device(calibration.device_id, "device", calibration.device_id); !seen) {
       return fail(seen.error());

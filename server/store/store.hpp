@@ -353,6 +353,10 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<StoredDrive>> drives(const std::optional<std::string>& device_id,
                                                                 const Page& page) = 0;
 
+  /// Removes a drive that no job is at work on; evaluations that have ended stay, with what they found. NotFound;
+  /// Conflict, as of a device.
+  [[nodiscard]] virtual Status remove_drive(std::string_view id) = 0;
+
   // ---- calibrations
   struct CalibrationOutcome {
     StoredCalibration calibration;

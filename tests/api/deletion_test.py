@@ -46,6 +46,21 @@ class Deletion(DaemonTest):
         self.assertEqual([job for job in self.daemon.items("/v1/jobs") if recording.json["id"] in str(job)], [], "its jobs go with it")
         self.recording("whole")  # and it may come again
 
+    def test_a_device_with_a_drive_goes_after_it_and_its_recordings(self) -> None:
+        files = zip(samples.drive_csvs(seed=5), (samples.DRIVE_IMU, samples.DRIVE_GNSS))
+        recordings = [self.expect(201, self.daemon.upload(content, device="driven", condition="drive", columns=samples.roles(roles)))
+                      for content, roles in files]
+        drive = self.made("/v1/drives", samples.drive_document(*(recording.json["id"] for recording in recordings)))
+        driven = self.daemon.finished(self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": drive.json["id"]})).json["id"])
+        for recording in recordings:
+            self.expect(204, self.delete(recording.headers["location"], "*"))
+        self.problem(409, "conflict", self.delete("/v1/devices/driven", "*"), drives=drive.json["id"])
+        self.problem(412, "precondition_failed", self.delete(drive.headers["location"], '"other"'))
+        self.expect(204, self.delete(drive.headers["location"], drive.headers["etag"] if "etag" in drive.headers else None))
+        self.problem(404, "not_found", self.delete(drive.headers["location"]))
+        self.assertEqual(self.daemon.get(f"/v1/jobs/{driven['id']}").json["state"], driven["state"], "what was found of it stays")
+        self.expect(204, self.delete("/v1/devices/driven", "*"))
+
     def test_many_dependents_are_counted(self) -> None:
         ids = [self.recording("crowded", seed).json["id"] for seed in range(7)]
         refused = self.problem(409, "conflict", self.delete("/v1/devices/crowded", "*"), recordings=", ".join(ids[:5]) + " and 2 more")

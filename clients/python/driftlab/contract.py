@@ -4510,6 +4510,8 @@ OPERATIONS: dict[str, Operation] = {
         'POST', '/v1/drives', (), ('Idempotency-Key',), ('application/json',)),
     'getDrive': Operation(
         'GET', '/v1/drives/{id}', (), (), ('application/json',)),
+    'deleteDrive': Operation(
+        'DELETE', '/v1/drives/{id}', (), ('If-Match',), ()),
     'listDriveEvaluations': Operation(
         'GET', '/v1/drive-evaluations', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
     'createDriveEvaluation': Operation(

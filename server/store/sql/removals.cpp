@@ -24,6 +24,7 @@ const std::vector<Dependents> kOfDevice{
     {"recording", "recordings",
      "SELECT id, count(*) OVER () FROM recordings WHERE device_id = ?1 ORDER BY id LIMIT ?2"},
     {"study", "studies", "SELECT id, count(*) OVER () FROM studies WHERE device_id = ?1 ORDER BY id LIMIT ?2"},
+    {"drive", "drives", "SELECT id, count(*) OVER () FROM drives WHERE device_id = ?1 ORDER BY id LIMIT ?2"},
     {"calibration", "calibrations",
      "SELECT id, count(*) OVER () FROM calibrations WHERE device_id = ?1 ORDER BY id LIMIT ?2"},
     {"model", "models", "SELECT id, count(*) OVER () FROM models WHERE device_id = ?1 ORDER BY id LIMIT ?2"},
@@ -36,6 +37,7 @@ const std::vector<Dependents> kOfStudy{
     {"investigation", "investigations",
      "SELECT id, count(*) OVER () FROM investigations WHERE study_id = ?1 ORDER BY id LIMIT ?2"},
     kLiveJobs};
+const std::vector<Dependents> kOfDrive{kLiveJobs};
 const std::vector<Dependents> kOfCalibration{
     {"recording", "recordings",
      "SELECT id, count(*) OVER () FROM recordings WHERE instr(metadata_json, ?1) > 0 ORDER BY id LIMIT ?2"},
@@ -58,6 +60,7 @@ constexpr std::string_view kForgetDevicesOfJobs =
 constexpr std::string_view kRemovePools = "DELETE FROM pools WHERE device_id = ?";
 constexpr std::string_view kRemoveDevice = "DELETE FROM devices WHERE id = ?";
 constexpr std::string_view kRemoveStudy = "DELETE FROM studies WHERE id = ?";
+constexpr std::string_view kRemoveDrive = "DELETE FROM drives WHERE id = ?";
 constexpr std::string_view kRemoveCalibration = "DELETE FROM calibrations WHERE id = ?";
 constexpr std::string_view kRemoveModel = "DELETE FROM models WHERE id = ?";
 /// With its job, whose result it is: the same may then be asked for again.
@@ -138,6 +141,16 @@ Status remove_study(Connection& connection, std::string_view id) {
     return unused;
   }
   return run_all(connection, {kRemoveStudy}, id);
+}
+
+Status remove_drive(Connection& connection, std::string_view id) {
+  if (const auto found = drive(connection, id); !found && !is_damaged(found.error())) {
+    return fail(found.error());
+  }
+  if (Status unused = require_free(connection, kOfDrive, "drive", id); !unused) {
+    return unused;
+  }
+  return run_all(connection, {kRemoveDrive}, id);
 }
 
 Status remove_calibration(Connection& connection, std::string_view id) {

@@ -184,6 +184,10 @@ Status SqlStore::remove_study(std::string_view id) {
   return remove("study.delete", id, [&](Connection& c) { return tables::remove_study(c, id); });
 }
 
+Status SqlStore::remove_drive(std::string_view id) {
+  return remove("drive.delete", id, [&](Connection& c) { return tables::remove_drive(c, id); });
+}
+
 Status SqlStore::remove_calibration(std::string_view id) {
   return remove("calibration.delete", id, [&](Connection& c) { return tables::remove_calibration(c, id); });
 }

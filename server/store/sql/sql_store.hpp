@@ -84,6 +84,7 @@ class SqlStore : public Store {
   [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_device(std::string_view id, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_study(std::string_view id) override;
+  [[nodiscard]] Status remove_drive(std::string_view id) override;
   [[nodiscard]] Status remove_calibration(std::string_view id) override;
   [[nodiscard]] Status remove_model(std::string_view id) override;
   [[nodiscard]] Status remove_investigation(std::string_view id) override;

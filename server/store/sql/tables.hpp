@@ -177,6 +177,7 @@ namespace driftlab::server::tables {
 // ---- removing what others may depend on
 [[nodiscard]] Status remove_device(Connection& connection, std::string_view id, std::int64_t expected_revision);
 [[nodiscard]] Status remove_study(Connection& connection, std::string_view id);
+[[nodiscard]] Status remove_drive(Connection& connection, std::string_view id);
 [[nodiscard]] Status remove_calibration(Connection& connection, std::string_view id);
 [[nodiscard]] Status remove_model(Connection& connection, std::string_view id);
 [[nodiscard]] Status remove_investigation(Connection& connection, std::string_view id);

@@ -38,6 +38,7 @@ std::string conflict(const Status& removed) {
 TEST_P(RemovalStore, ADeviceGoesAfterWhatItHas) {
   const Device device = add_device(store());
   const Study study = study_on(store(), device);
+  const StoredDrive drive = store().add_drive({"", device.id, "drive", "{}", 0})->drive;
   const auto calibration = store().add_calibration({"", device.id, "key", "{}", 0})->calibration;
   const Model model = model_named(store(), "model", device.id);
   std::vector<Recording> recordings;
@@ -47,9 +48,9 @@ TEST_P(RemovalStore, ADeviceGoesAfterWhatItHas) {
   }
   const Status refused = store().remove_device(device.id, device.revision);
   EXPECT_THAT(conflict(refused), AllOf(HasSubstr("7 recordings (" + recordings[0].id), HasSubstr(" and 2 more)"),
-                                       HasSubstr("1 study (" + study.id + ")"), HasSubstr(calibration.id),
-                                       HasSubstr("1 model (" + model.id + ")")));
-  ASSERT_EQ(refused.error().fields.size(), 4U);
+                                       HasSubstr("1 study (" + study.id + ")"), HasSubstr("1 drive (" + drive.id + ")"),
+                                       HasSubstr(calibration.id), HasSubstr("1 model (" + model.id + ")")));
+  ASSERT_EQ(refused.error().fields.size(), 5U);
   EXPECT_EQ(refused.error().fields[0].name, "recordings");
   EXPECT_THAT(conflict(store().remove_device(device.id, 7)), HasSubstr("changed by somebody else"));
 
@@ -57,11 +58,13 @@ TEST_P(RemovalStore, ADeviceGoesAfterWhatItHas) {
     ASSERT_TRUE(store().remove_recording(recording.id, recording.revision));
   }
   ASSERT_TRUE(store().remove_study(study.id));
+  ASSERT_TRUE(store().remove_drive(drive.id));
   ASSERT_TRUE(store().remove_calibration(calibration.id));
   ASSERT_TRUE(store().remove_model(model.id));
   ASSERT_TRUE(store().remove_device(device.id, device.revision));
   for (const ErrorCode code :
        {store().device(device.id).error().code, store().study(study.id).error().code,
+        store().drive(drive.id).error().code, store().remove_drive(drive.id).error().code,
         store().calibration(calibration.id).error().code, store().model(model.id).error().code,
         store().remove_device(device.id, 1).error().code, store().remove_study(study.id).error().code,
         store().remove_calibration(calibration.id).error().code, store().remove_model(model.id).error().code,

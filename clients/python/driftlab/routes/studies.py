@@ -48,6 +48,11 @@ class StudyRoutes(Routes):
         """One drive."""
         return cast(StoredDrive, self._get("getDrive", {"id": id}))
 
+    @operation("deleteDrive")
+    def delete_drive(self, id: str, *, if_match: str | None = None) -> None:
+        """Deletes a drive; its evaluations and its recordings stay."""
+        self._transport.call("deleteDrive", {"id": id}, if_match=if_match)
+
     @operation("listModels")
     def models(self, *, device: str | None = None, parent: str | None = None, sort: SortByName | None = None,
                page_size: int = PAGE) -> Iterator[Model]:
