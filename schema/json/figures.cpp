@@ -24,11 +24,13 @@ Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::str
       figures = figures_of_outages(document);
     } else if (document.contains("columns") && document.contains("rows")) {
       figures = figures_of_table(document, channel);
+    } else if (document.contains("tables") && document["tables"].is_array()) {
+      figures = figures_of_tables(document, channel);
     } else {
       return fail(
           ErrorCode::InvalidArgument,
           "This is no document with a figure: a characterisation, an investigation, an outage evaluation, what a "
-          "recorded drive answers, a regression run or a parameter table, as --json writes them.");
+          "recorded drive answers, a regression run, a parameter table or those of all axes, as --json writes them.");
     }
     if (figures.empty()) {
       return fail(ErrorCode::InvalidArgument, channel.empty()

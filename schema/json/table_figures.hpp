@@ -7,8 +7,12 @@
 
 namespace driftlab {
 
-/// One for each parameter of the table, against rate or acceleration. `parameter`: of this alone; empty: of all. Throws
-/// Json::exception where the document is not as driftlab writes it.
+/// One for each parameter of the table, against rate or acceleration; where conditions of several kinds have a size,
+/// one for each kind, with those at rest in all. `parameter`: of this alone; empty: of all. Throws Json::exception
+/// where the document is not as driftlab writes it.
 [[nodiscard]] std::vector<NamedFigure> figures_of_table(const Json& document, const std::string& parameter);
+
+/// Of the tables of all axes of a sensor, named by their axis.
+[[nodiscard]] std::vector<NamedFigure> figures_of_tables(const Json& document, const std::string& parameter);
 
 }  // namespace driftlab

@@ -1,0 +1,69 @@
+#include "schema/json/table_figures.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace driftlab {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Json row(const Json& condition, double value) {
+  return {{"condition", condition}, {"values", {{"N", {{"value", value}, {"ci95", {0.9 * value, 1.1 * value}}}}}}};
+}
+
+Json table(const std::string& axis, const std::vector<Json>& rows) {
+  return {{"device", "one"},
+          {"sensor", "gyroscope"},
+          {"axis", axis},
+          {"columns", {{{"key", "N"}, {"unit", "deg/sqrt(h)"}}}},
+          {"rows", rows}};
+}
+
+const Json kStatic{{"kind", "static"}};
+
+Json rate(double value, const std::string& unit) {
+  return {{"kind", "constant_rate"}, {"axis", "z"}, {"value", value}, {"unit", unit}};
+}
+
+TEST(TableFigures, ADeviceAtRestHasAnAxisThatSaysSo) {
+  const auto figures = figures_of_table(table("z", {row(kStatic, 0.1)}), "");
+  ASSERT_EQ(figures.size(), 1U);
+  EXPECT_EQ(figures[0].name, "N");
+  const figure::Plot& plot = figures[0].figure.plots.at(0);
+  EXPECT_EQ(plot.x.name, "at rest");
+  EXPECT_GT(plot.x.domain->second, 0.5) << "zero has room around it";
+}
+
+TEST(TableFigures, ConditionsOfOneKindStandInOneUnitAndOtherKindsApart) {
+  const Json acceleration{{"kind", "angular_acceleration"}, {"axis", "z"}, {"value", 2.0}, {"unit", "deg/s^2"}};
+  const auto figures = figures_of_table(table("z", {row(kStatic, 0.1), row(rate(9.0, "deg/s"), 0.2),
+                                                    row(rate(-0.5, "rad/s"), 0.3), row(acceleration, 0.4)}),
+                                        "");
+  ASSERT_EQ(figures.size(), 2U);
+  EXPECT_EQ(figures[0].name, "N-constant_rate");
+  EXPECT_EQ(figures[1].name, "N-angular_acceleration");
+  const figure::Plot& rates = figures[0].figure.plots.at(0);
+  EXPECT_THAT(rates.x.name, HasSubstr("constant rate"));
+  EXPECT_THAT(rates.series.at(0).x, ElementsAre(0.0, DoubleNear(9.0, 1e-12), DoubleNear(28.6479, 1e-4)));
+  const figure::Plot& accelerations = figures[1].figure.plots.at(0);
+  EXPECT_THAT(accelerations.series.at(0).x, ElementsAre(0.0, DoubleNear(2.0, 1e-12)));
+}
+
+TEST(TableFigures, TheTablesOfAllAxesAreDrawnByAxis) {
+  const Json all{{"device", "one"}, {"tables", {table("x", {row(kStatic, 0.1)}), table("y", {row(kStatic, 0.2)})}}};
+  const auto figures = figures_of(all, "N");
+  ASSERT_TRUE(figures) << figures.error().message;
+  ASSERT_EQ(figures->size(), 2U);
+  EXPECT_EQ((*figures)[0].name, "x-N");
+  EXPECT_EQ((*figures)[1].name, "y-N");
+  EXPECT_FALSE(figures_of(all, "K"));
+}
+
+}  // namespace
+}  // namespace driftlab
