@@ -73,6 +73,7 @@ std::string why_no_density(const ImuNoise& imu) {
 struct Device {
   std::string name;
   std::vector<SensorSources> sensors;
+  std::vector<Remark> remarks;  ///< what must be known of the figures: a unit that looks wrong, a frozen sensor
 };
 
 /// What the user named: a characterisation as it stands, recordings characterised now.
@@ -86,7 +87,11 @@ tl::expected<Device, Failure> characterised(const ExportFlags& flags) {
     if (!sensors) {
       return tl::unexpected(Failure{sensors.error(), Exit::BadInput});
     }
-    return Device{std::move(device), std::move(*sensors)};
+    auto remarks = remarks_of(*document);
+    if (!remarks) {
+      return tl::unexpected(Failure{remarks.error(), Exit::BadInput});
+    }
+    return Device{std::move(device), std::move(*sensors), std::move(*remarks)};
   }
   auto inputs = read_inputs(flags.files, flags.file);
   if (!inputs) {
@@ -99,7 +104,7 @@ tl::expected<Device, Failure> characterised(const ExportFlags& flags) {
   if (!found) {
     return tl::unexpected(found.error());
   }
-  return Device{inputs->device, sensors_of(found->recordings)};
+  return Device{inputs->device, sensors_of(found->recordings), remarks_of(found->recordings)};
 }
 
 Exit run_here(const ExportFlags& flags, const ExportTarget& target) {
@@ -113,6 +118,9 @@ Exit run_here(const ExportFlags& flags, const ExportTarget& target) {
   }
   if (!has_noise(*imu)) {
     return complain({ErrorCode::TooFewSamples, why_no_density(*imu), {}});
+  }
+  for (const Remark& remark : found->remarks) {
+    std::fprintf(stderr, "driftlab: %s: %s\n", remark.whose.c_str(), remark.sentence.c_str());
   }
   for (const std::string& gap : export_gaps(target, *imu)) {
     std::fprintf(stderr, "driftlab: %s\n", gap.c_str());

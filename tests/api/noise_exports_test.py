@@ -99,6 +99,16 @@ class Exports(DaemonTest):
         self.problem(404, "not_found", self.daemon.get("/v1/exports/kalibr?device=nobody"))
         self.expect(406, self.daemon.get("/v1/exports/kalibr?device=six", Accept="image/png"))
 
+    def test_what_is_wrong_with_a_recording_is_said_beside_its_export(self) -> None:
+        header, *rows = (self.folder / "six.csv").read_text("utf-8").splitlines()
+        raised = [line.rpartition(",")[0] + f",{float(line.rpartition(',')[2]) + 9.81:.6f}" for line in rows]
+        (self.folder / "wrong_unit.csv").write_text("\n".join([header.replace("m/s^2", "g"), *raised]) + "\n", "utf-8")
+        written = self.driftlab("export", "--target", "kalibr", "wrong_unit.csv", "--rate-hz", "100")
+        self.assertEqual(written.returncode, 0, written.stderr)
+        self.assertIn("wrong_unit", written.stderr)
+        self.assertIn("m/s^2", written.stderr)
+        self.assertNotIn("look like", written.stdout)
+
     def test_every_small_recording_gives_a_kalibr_file_or_a_sentence(self) -> None:
         """Of the recordings up to 1.5 MB: long_exports_test.py exports the larger ones."""
         self.assertGreater(export_all(self, lambda size: size <= 1_500_000), 20)

@@ -30,6 +30,7 @@ void ComparedRecording::tell(const Quality& quality) {
   jitter_s = quality.jitter_s;
   samples = quality.samples;
   missing = quality.missing;
+  notes = quality.notes;
 }
 
 }  // namespace driftlab::regression

@@ -71,11 +71,12 @@ struct ComparedRecording {
   FullScales full_scale = {};
   bool investigated = false;        ///< an investigation looked for causes
   std::vector<std::string> causes;  ///< identified ones
+  std::vector<std::string> notes;   ///< what the quality of its file says: a unit that looks wrong, a frozen sensor
   std::vector<ComparedChannel> channels;
 
   /// Sets rate and duration by the grid of the first channel, of which samples may be missing. Needs a channel.
   void time_by_channels();
-  /// Copies the figures of the whole file from the quality: samples, gaps, jitter and the declared rate.
+  /// Copies the figures of the whole file from the quality: samples, gaps, jitter and the declared rate; and its notes.
   /// Needs `rate_hz`.
   void tell(const Quality& quality);
 };

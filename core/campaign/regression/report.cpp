@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace driftlab::regression {
@@ -132,6 +134,30 @@ void check_facts(const ComparedSessions& sessions, Report& report) {
   report.checks.push_back(check_time_base(report.units, settings.test.through_s));
 }
 
+/// What must be known of the files of both arms, each sentence once with the recordings that it is of.
+void note_recordings(const Request& request, Report& report) {
+  constexpr std::size_t kNamed = 3;
+  std::map<std::string, std::set<std::string>> whose;
+  for (const Recordings* const arm : {&request.baseline, &request.candidate}) {
+    for (const ComparedRecording& recording : arm->recordings) {
+      for (const std::string& note : recording.notes) {
+        whose[note].insert(recording.id);
+      }
+    }
+  }
+  for (const auto& [note, ids] : whose) {
+    std::string named;
+    std::size_t count = 0;
+    for (auto id = ids.begin(); id != ids.end() && count < kNamed; ++id, ++count) {
+      named += (named.empty() ? "" : ", ") + *id;
+    }
+    if (ids.size() > count) {
+      named += " and " + std::to_string(ids.size() - count) + " more";
+    }
+    report.notes.push_back(named + ": " + note);
+  }
+}
+
 }  // namespace
 
 Result<Report> run_regression(const Request& request, const RunControl& control) {
@@ -189,6 +215,7 @@ Result<Report> run_regression(const Request& request, const RunControl& control)
                    : !report.comparability.empty() ? Verdict::Inconclusive
                                                    : report.comparison.verdict;
   report.leaning_worse = report.verdict == Verdict::Inconclusive && report.comparison.worse_shown;
+  note_recordings(request, report);
   tell(report);
   return report;
 }

@@ -70,8 +70,12 @@ std::string pass_sentence(const Report& report) {
 
 bool is_open(const ScaleReport& test) { return test.gated && test.outcome.upper_one >= test.test.margin; }
 
+bool is_on_the_margin(const ToldTest& open) {
+  return open.test != nullptr && std::abs(open.test->theta - open.test->test.margin) < kOnTheMargin;
+}
+
 std::string needs_sentence(const Report& report, const ToldTest& open) {
-  if (open.test != nullptr && std::abs(open.test->theta - open.test->test.margin) < kOnTheMargin) {
+  if (is_on_the_margin(open)) {
     return short_name(open.unit->name) + " sits on the margin; no affordable recording decides; the margin does.";
   }
   const Needs& needs = report.comparison.needs;
@@ -225,6 +229,9 @@ void tell(Report& report) {
   const ToldTest beyond = furthest_beyond(report);
   const ToldTest open =
       largest(report, is_open, [](const ScaleReport& test) { return test.outcome.upper_one - test.test.margin; });
+  if (is_on_the_margin(open)) {
+    report.comparison.needs = {};  // what would decide of an unchanged device does not decide this one
+  }
   if (report.comparison.needs.length_factor) {
     double longest_s = 0.0;
     for (const ArmReport::Session& session : report.candidate.sessions) {

@@ -55,6 +55,22 @@ TEST(RegressionReport, PassesWhatDidNotChangeAndSaysHowFar) {
   EXPECT_EQ(report->summary.level, "fine");
 }
 
+TEST(RegressionReport, SaysOfTheFilesWhatTheirQualitySaysEachSentenceOnce) {
+  Request asked = request(0.05);
+  const std::string frozen = "The readings of gz do not move in 3001 of 4000 samples.";
+  Quality quality;
+  quality.notes = {frozen};
+  for (ComparedRecording& recording : asked.baseline.recordings) {
+    recording.tell(quality);
+  }
+  asked.candidate.recordings.back().tell(quality);
+  const auto report = run_regression(asked);
+  ASSERT_TRUE(report) << report.error().message;
+  const std::string told = "1.0/0, 1.0/1, 1.0/2 and 1 more: " + frozen;
+  EXPECT_EQ(std::count(report->notes.begin(), report->notes.end(), told), 1);
+  EXPECT_EQ(std::count(report->summary.details.begin(), report->summary.details.end(), told), 1);
+}
+
 TEST(RegressionReport, FailsWhatGrewAndNamesAxisSizeAndMargin) {
   const auto report = run_regression(request(0.09));
   ASSERT_TRUE(report);

@@ -53,5 +53,20 @@ TEST(ByDistance, HasTestsBeyondFirstThenGatedOnesThenWatchedOnesByTheirUpperEnds
   EXPECT_EQ(order, "beyond; watched and beyond; open; like it; fine; watched; ");
 }
 
+/// What an unchanged device would need does not decide one that sits on its margin.
+TEST(Tell, AsksForNothingWhereATestSitsOnItsMargin) {
+  for (const double theta : {0.09, 0.02}) {
+    ScaleReport open = test_of("a", Finding::Open, 0.0, 0.2);
+    open.theta = theta;
+    Report report = report_of({open}, {});
+    report.comparison.needs = {5U, 8.0};
+    tell(report);
+    const bool on_margin = theta > 0.05;
+    EXPECT_EQ(report.needs.find("sits on the margin") != std::string::npos, on_margin) << report.needs;
+    EXPECT_EQ(report.comparison.needs.sessions_per_arm.has_value(), !on_margin);
+    EXPECT_EQ(report.needed_length_s.has_value(), !on_margin);
+  }
+}
+
 }  // namespace
 }  // namespace driftlab::regression
