@@ -71,6 +71,7 @@ if [ -z "$bin" ]; then
   . "$repository/deploy/packages.sh"
   install_packages "$logs/apt.log" build dashboard || exit 1
   build=$repository/build/release
+  left="the build in $build with the Debian packages that it needs"
   # A tree that is configured, with the suites perhaps, stays as it is.
   [ -f "$build/CMakeCache.txt" ] || (cd "$repository" && cmake --preset release) >"$logs/configure.log" 2>&1 ||
     { tail -n 20 "$logs/configure.log" >&2; fail "configuring failed; the whole output is in $logs/configure.log"; }
@@ -158,7 +159,7 @@ fi
 
 say ''
 if [ "$once" = yes ]; then
-  say "Done: the daemon that served at $address is stopped. It leaves its data in $data, logs in $logs and the programs in $bin; nothing else runs or stays."
+  say "Done: the daemon that served at $address is stopped. It leaves its data in $data, logs in $logs and ${left:-the programs in $bin}; nothing else runs or stays."
   exit 0
 fi
 say "driftlab serves at $address (open it in a browser: the lab's pages) and keeps its data in $data"

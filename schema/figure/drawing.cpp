@@ -80,16 +80,21 @@ void add_axes(const Area& area, std::vector<Shape>& shapes) {
 }
 
 void add_guides(const Area& area, std::vector<Shape>& shapes) {
-  constexpr double kLength = 52.0;
+  constexpr double kWidest = 84.0;
+  constexpr double kLongest = 46.0;
+  constexpr double kRoomForText = 30.0;
+  const double guides = std::max(1.0, static_cast<double>(area.plot->guides.size()));
+  const double apart = std::min(kWidest, (area.right - area.left - 16.0) / guides);
+  const double length = std::min(kLongest, apart - kRoomForText);
   double x = area.left + 16.0;
-  const double y = area.bottom - 22.0;
+  const double y = area.bottom - 30.0;
   for (const Guide& guide : area.plot->guides) {
-    const double rise = guide.slope * kLength;
-    shapes.push_back(line(Role::Guide, {x, y + rise / 2.0}, {x + kLength, y - rise / 2.0}, palette::kRule));
-    Shape text = words(x + kLength + 5.0, y + 4.0, guide.text, Anchor::Start, palette::kInk3, 11.0);
+    const double rise = guide.slope * length;
+    shapes.push_back(line(Role::Guide, {x, y + rise / 2.0}, {x + length, y - rise / 2.0}, palette::kRule));
+    Shape text = words(x + length + 5.0, y + 4.0, guide.text, Anchor::Start, palette::kInk3, 11.0);
     text.halo = true;
     shapes.push_back(std::move(text));
-    x += 96.0;
+    x += apart;
   }
 }
 

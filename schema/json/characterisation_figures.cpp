@@ -144,7 +144,7 @@ Figure allan_figure(const StoredChannel& channel, const std::string& recording) 
             .y = {ScaleKind::Log, "Allan deviation, " + printed_unit(drawn.unit.symbol)},
             .series = {classical}};
   main.equal_units = true;
-  main.guides = {{-1.0, "−1"}, {-0.5, "−½"}, {0.5, "+½"}};
+  main.guides = {{-1.0, "−1"}, {-0.5, "−½"}, {0.0, "0"}, {0.5, "+½"}, {1.0, "+1"}};
   main.notes = notes_of(drawn, components);
   if (robust) {
     main.series.push_back(*robust);
