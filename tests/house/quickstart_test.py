@@ -113,6 +113,7 @@ class Quickstart(unittest.TestCase):
         self.assertEqual(seen, [step for step in steps if step in seen], "in order, and nothing else")
         self.assertNotIn("\r", ran.stdout)
         self.assertEqual(ran.stderr, "")
+        self.assertIn(f"and the build in {repository}/build/release with the Debian packages that it needs; nothing else runs or stays.", lines[-1])
 
     def test_an_own_recording_gives_its_figures(self) -> None:
         ran = self.quickstart("--once", "--recording", str(self.recording()), "--rate-hz", "100", "--columns",
