@@ -22,6 +22,9 @@ std::string body_of(const Json& document) {
   if (document.contains("filters") && document.contains("claims")) {
     return page::outages_html(document);
   }
+  if ((document.contains("columns") && document.contains("rows")) || document.contains("tables")) {
+    return page::parameter_tables_html(document);
+  }
   const Json summary = document.value("summary", Json(nullptr));
   return (summary.is_object() ? page::verdict_html(summary.value("verdict", "")) : "") + page::figures_html(document);
 }

@@ -11,5 +11,7 @@ namespace driftlab::page {
 [[nodiscard]] std::string investigation_html(const Json& document);
 [[nodiscard]] std::string regression_html(const Json& document);
 [[nodiscard]] std::string outages_html(const Json& document);
+/// Of one parameter table, or of those of all axes of a sensor.
+[[nodiscard]] std::string parameter_tables_html(const Json& document);
 
 }  // namespace driftlab::page

@@ -1,5 +1,7 @@
 #include "schema/json/table_figures.hpp"
 
+#include "schema/json/report_page.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -63,6 +65,21 @@ TEST(TableFigures, TheTablesOfAllAxesAreDrawnByAxis) {
   EXPECT_EQ((*figures)[0].name, "x-N");
   EXPECT_EQ((*figures)[1].name, "y-N");
   EXPECT_FALSE(figures_of(all, "K"));
+}
+
+TEST(TableReports, HaveEveryNumberWithItsInterval) {
+  Json one = table("z", {row(kStatic, 0.1)});
+  one["model"] = nullptr;  // as a table by Allan variance has it
+  one["columns"].push_back({{"key", "alpha"}, {"unit", nullptr}});
+  one["rows"][0]["label"] = "static";
+  one["rows"][0]["values"]["alpha"] = {{"value", 1.25}, {"ci95", {nullptr, nullptr}}};
+  const auto page = report_page(one, "one", "");
+  ASSERT_TRUE(page) << page.error().message;
+  EXPECT_THAT(*page, HasSubstr("<td>static</td><td>0.100 [0.090, 0.110]</td><td>1.25</td>"));
+  const auto all = report_page({{"device", "one"}, {"tables", {one, table("x", {row(kStatic, 0.2)})}}}, "one", "");
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_THAT(*all, HasSubstr("gyroscope z"));
+  EXPECT_THAT(*all, HasSubstr("gyroscope x"));
 }
 
 }  // namespace
