@@ -53,7 +53,13 @@ constexpr std::array kAliases{
     Alias{"-", "1"},
     Alias{"LSB", "1"},
     Alias{"lsb", "1"},
+    Alias{"LSb", "1"},
+    Alias{"LSBs", "1"},
+    Alias{"lsbs", "1"},
+    Alias{"count", "1"},
     Alias{"counts", "1"},
+    Alias{"digit", "1"},
+    Alias{"digits", "1"},
     Alias{"raw", "1"},
 };
 

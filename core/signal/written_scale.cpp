@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kLongest = 100;  ///< characters; a longer text is a name
 
-constexpr std::array<std::string_view, 8> kCounts{"raw", "LSB", "lsb", "LSb", "count", "counts", "digit", "digits"};
+constexpr std::array<std::string_view, 10> kCounts{"raw",  "LSB",   "lsb",    "LSb",   "LSBs",
+                                                   "lsbs", "count", "counts", "digit", "digits"};
 
 using IsUnit = std::function<bool(std::string_view)>;
 
@@ -58,7 +59,8 @@ std::optional<WrittenScale> take_affine(std::string_view& text, bool scaled = fa
   return found;
 }
 
-/// `raw/340+36.53 degC`
+/// `raw/340+36.53 degC`. What stands behind the word is apart from it: `LSBs` and `digits` are plurals, no counts of a
+/// second.
 std::optional<WrittenScale> formula_first(std::string_view text, const IsUnit& is_unit) {
   for (const std::string_view word : kCounts) {
     std::string_view rest = text;
@@ -66,6 +68,9 @@ std::optional<WrittenScale> formula_first(std::string_view text, const IsUnit& i
       continue;
     }
     rest.remove_prefix(word.size());
+    if (rest.empty() || std::string_view("*/+- \t").find(rest.front()) == std::string_view::npos) {
+      continue;
+    }
     auto found = take_affine(rest);
     if (found && is_unit(rest)) {
       found->unit = rest;

@@ -114,6 +114,15 @@ TEST(AssignRoles, RefusesAnUnknownUnitInTheNameOfASensor) {
   EXPECT_TRUE(assign_roles(stated, {"gz [furlong]"})) << "what the user states rules";
 }
 
+TEST(AssignRoles, TakesCountsInTheNameOfASensorForNoUnitOfTime) {
+  for (const char* const name : {"gz [digits]", "gz [LSBs]", "gz (digit)", "gz [LSBS]"}) {
+    const auto roles = assign_roles({}, {"gx", name});
+    ASSERT_TRUE(roles) << name << ": " << roles.error().message;
+    EXPECT_EQ(roles->at(1)->quantity, Quantity::AngularRate) << name;
+    EXPECT_EQ(roles->at(1)->unit.value_or(Unit{}).symbol, "1") << name;
+  }
+}
+
 TEST(AssignRoles, TakesStatedColumnsAndLeavesTheRest) {
   RecordingSpec spec;
   spec.columns = {{"b", {Quantity::AngularRate, "z", unit("deg/s")}}};

@@ -92,6 +92,20 @@ TEST(Unit, TakesAScaleAndAnOffsetInTheFormsOfDataSheets) {
   EXPECT_DOUBLE_EQ(parse_unit("rad s^-1*1e-3")->to_si(2.0), 2e-3);
 }
 
+TEST(Unit, TakesThePluralOfACountForNoTime) {
+  // 'LSB' or 'digit' and 's' were counts of a second.
+  for (const char* const symbol : {"LSBs", "lsbs", "digits", "digit", "count", "counts", "LSb"}) {
+    const auto unit = parse_unit(symbol);
+    ASSERT_TRUE(unit) << symbol;
+    EXPECT_EQ(unit->symbol, "1") << symbol;
+  }
+  for (const char* const symbol : {"raws", "LSBms", "digitg", "countsdeg/s", "rawmg"}) {
+    EXPECT_FALSE(parse_unit(symbol)) << symbol;
+  }
+  EXPECT_DOUBLE_EQ(parse_unit("LSB s")->to_si(2.0), 2.0) << "apart from the word it is a unit";
+  EXPECT_DOUBLE_EQ(parse_unit("digits/131 deg/s")->to_si(131.0 * 180.0), std::numbers::pi);
+}
+
 TEST(Unit, SaysWhatIsWrongWithAScaleAndHowToWriteIt) {
   for (const char* const symbol : {"degC/0+36.53", "deg/s*-2", "raw/nan degC", "deg/s/inf", "0 mg"}) {
     const auto unit = parse_unit(symbol);
