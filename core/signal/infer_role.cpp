@@ -1,5 +1,6 @@
 #include "core/signal/infer_role.hpp"
 
+#include "core/signal/column_unit.hpp"
 #include "core/signal/text.hpp"
 
 #include <algorithm>
@@ -132,11 +133,11 @@ std::string squash(std::string_view name) {
 
 bool is_axis_letter(char c) { return c == 'x' || c == 'y' || c == 'z'; }
 
-std::optional<Unit> known_unit(std::string_view symbol) {
+std::optional<Unit> known_unit(std::string_view symbol, Quantity quantity = Quantity::Unspecified) {
   if (symbol.empty()) {
     return std::nullopt;
   }
-  auto unit = parse_unit(symbol);
+  auto unit = parse_unit(symbol, quantity);
   return unit ? std::optional(std::move(*unit)) : std::nullopt;
 }
 
@@ -253,20 +254,40 @@ bool states_no_unit(std::string_view bracket) {
   return bracket == "-" || std::find(kNoUnits.begin(), kNoUnits.end(), squash(bracket)) != kNoUnits.end();
 }
 
-}  // namespace
+/// A unit in brackets that is not known, behind a name that says what is measured.
+struct UnknownUnit {
+  Quantity quantity;
+  std::string symbol;
+  Error error;
+};
 
-Status check_bracketed_unit(std::string_view written) {
+std::optional<UnknownUnit> unknown_unit(std::string_view written) {
   const std::string text = with_short_unit(without_plain_words(written));
   std::string_view name = text;
   const std::string_view bracket = take_bracket(name);
-  if (bracket.empty() || states_no_unit(bracket) || !infer_bare(name, std::nullopt)) {
+  const auto role = infer_bare(name, std::nullopt);
+  if (bracket.empty() || states_no_unit(bracket) || !role) {
+    return std::nullopt;
+  }
+  auto unit = parse_unit(bracket, role->quantity);
+  return unit ? std::nullopt
+              : std::optional(UnknownUnit{role->quantity, std::string(bracket), std::move(unit).error()});
+}
+
+}  // namespace
+
+Status check_bracketed_unit(std::string_view written) {
+  const auto unknown = unknown_unit(written);
+  if (!unknown || unknown->quantity == Quantity::Temperature) {
     return {};
   }
-  if (auto unit = parse_unit(bracket); !unit) {
-    return fail(ErrorCode::UnknownUnit, "Column '" + std::string(written) + "': " + unit.error().message,
-                {{"column", std::string(written)}, {"unit", std::string(bracket)}});
-  }
-  return {};
+  return fail(ErrorCode::UnknownUnit, "Column '" + std::string(written) + "': " + unknown->error.message,
+              {{"column", std::string(written)}, {"unit", unknown->symbol}});
+}
+
+std::string unknown_unit_of_temperature(std::string_view name) {
+  const auto unknown = unknown_unit(name);
+  return unknown && unknown->quantity == Quantity::Temperature ? unknown->symbol : std::string();
 }
 
 std::vector<std::string> inertial_structs(const ColumnNames& names) {
@@ -314,7 +335,9 @@ ColumnRole infer_role(std::string_view written) {
       return *role;
     }
   }
-  return infer_bare(name, known_unit(bracket)).value_or(ColumnRole{});
+  const auto bare = infer_bare(name, std::nullopt);
+  const Quantity quantity = bare ? bare->quantity : Quantity::Unspecified;
+  return infer_bare(name, known_unit(bracket, quantity)).value_or(ColumnRole{});
 }
 
 }  // namespace driftlab

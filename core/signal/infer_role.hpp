@@ -36,9 +36,13 @@ namespace driftlab {
 [[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in
-/// unit 1 would give a wrong answer. Words for raw numbers are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time
-/// (UTC)`), and a name that implies no role may have anything in brackets. Error: UnknownUnit with fields `column` and
-/// `unit`.
+/// unit 1 would give a wrong answer. A temperature is not analysed: unknown_unit_of_temperature() says so instead.
+/// Words for raw numbers are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time (UTC)`), and a name that implies
+/// no role may have anything in brackets. Error: UnknownUnit with fields `column` and `unit`.
 [[nodiscard]] Status check_bracketed_unit(std::string_view name);
+
+/// What stands in brackets behind the name of a temperature and is no known unit, `F` of `temp (F)`; empty for any
+/// other name.
+[[nodiscard]] std::string unknown_unit_of_temperature(std::string_view name);
 
 }  // namespace driftlab

@@ -159,7 +159,12 @@ Result<ColumnUse> RecordingColumns::use_of(std::size_t index, const Passed& pass
     return ColumnUse{false, "The column '" + name(index) + "' has no stated meaning and is ignored.", {}};
   }
   if (!is_sensor(role->quantity)) {
-    return ColumnUse{};
+    const std::string unknown = role->unit ? "" : unknown_unit_of_temperature(name(index));
+    return ColumnUse{false,
+                     unknown.empty() ? ""
+                                     : "The unit '" + unknown + "' of column '" + name(index) +
+                                           "' is not known; it counts as not stated.",
+                     {}};
   }
   if (const Status holes = check_holes(name(index), samples(index), passed); !holes) {
     if (guessed_ && may_be_left_out(*role, name(index), index, samples(index))) {

@@ -1,6 +1,7 @@
 #include "core/signal/unit.hpp"
 
 #include "core/signal/angle.hpp"
+#include "core/signal/text.hpp"
 #include "core/signal/written_scale.hpp"
 
 #include <algorithm>
@@ -49,6 +50,37 @@ constexpr std::array kAliases{
     Alias{"radians/sec", "rad/s"},
     Alias{"radians/second", "rad/s"},
     Alias{"µg", "ug"},
+    Alias{"msec", "ms"},
+    Alias{"usec", "us"},
+    Alias{"µsec", "us"},
+    Alias{"nsec", "ns"},
+    Alias{"milliseconds", "ms"},
+    Alias{"microseconds", "us"},
+    Alias{"nanoseconds", "ns"},
+    Alias{"rads/s", "rad/s"},
+    Alias{"rads/sec", "rad/s"},
+    Alias{"µrad/s", "urad/s"},
+    Alias{"deg/hour", "deg/h"},
+    Alias{"degree/h", "deg/h"},
+    Alias{"degrees/h", "deg/h"},
+    Alias{"degrees/hour", "deg/h"},
+    Alias{"°/hr", "deg/h"},
+    Alias{"°/hour", "deg/h"},
+    Alias{"°/min", "deg/min"},
+    Alias{"mps2", "m/s^2"},
+    Alias{"mps^2", "m/s^2"},
+    Alias{"m/sec2", "m/s^2"},
+    Alias{"mm/s2", "mm/s^2"},
+    Alias{"mm/s²", "mm/s^2"},
+    Alias{"cm/s2", "cm/s^2"},
+    Alias{"cm/s²", "cm/s^2"},
+    Alias{"g0", "g"},
+    Alias{"gn", "g"},
+    Alias{"mgal", "mGal"},
+    Alias{"deg C", "degC"},
+    Alias{"° C", "degC"},
+    Alias{"℃", "degC"},
+    Alias{"Kelvin", "K"},
     Alias{"", "1"},
     Alias{"-", "1"},
     Alias{"LSB", "1"},
@@ -69,9 +101,24 @@ constexpr std::array kPowers{
     Alias{" s^-2", "/s^2"}, Alias{" s-2", "/s^2"}, Alias{" s⁻²", "/s^2"},
 };
 
-/// `rad s^-1`, `rad·s⁻¹`, `m*s^-2`, `m.s-2` as a quotient.
+/// Characters that look like others and stand for them, and a power as programs write it.
+constexpr std::array kLookalikes{
+    Alias{"μ", "µ"},  // Greek mu (U+03BC) for the micro sign (U+00B5)
+    Alias{"º", "°"},  // the ordinal sign (U+00BA), a key of Spanish keyboards, for the degree sign (U+00B0)
+    Alias{"˚", "°"},  // the ring (U+02DA), a key of Macs
+    Alias{"**", "^"},
+};
+
+/// `rad s^-1`, `rad·s⁻¹`, `m*s^-2`, `m.s-2` as a quotient; of characters that look alike one.
 std::string as_quotient(std::string_view written) {
   std::string text(written);
+  for (const Alias& lookalike : kLookalikes) {
+    for (std::size_t at = text.find(lookalike.written); at != std::string::npos;
+         at = text.find(lookalike.written, at)) {
+      text.replace(at, lookalike.written.size(), lookalike.symbol);
+      at += lookalike.symbol.size();
+    }
+  }
   for (const std::string_view dot : {"·", "⋅", "*", "."}) {
     const std::size_t at = text.rfind(dot);
     if (at != std::string::npos && text.substr(at + dot.size()).starts_with("s")) {
@@ -86,16 +133,56 @@ std::string as_quotient(std::string_view written) {
   return text;
 }
 
-std::optional<Unit> plain_unit(std::string_view symbol) {
-  for (const Alias& alias : kAliases) {
-    if (alias.written == symbol) {
-      symbol = alias.symbol;
-      break;
-    }
+/// True where `written` means `unit` in capitals too: words and what has degrees or radians in it. Not where case tells
+/// apart what is meant: s from siemens, g from gauss, m from mega, T from t.
+bool means_the_same_in_capitals(std::string_view written, const Unit& unit) {
+  switch (unit.dimension) {
+    case Dimension::AngularRate:
+      return true;
+    case Dimension::Angle:
+    case Dimension::Time:
+    case Dimension::One:
+      return written.size() > 2;
+    case Dimension::Temperature:
+      return written.size() > 1;
+    default:
+      return false;
   }
+}
+
+/// The unit with this symbol, which is one of all_units().
+const Unit* find_unit(std::string_view symbol) {
   const auto& units = all_units();
   const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.symbol == symbol; });
-  return found == units.end() ? std::nullopt : std::optional(*found);
+  return found == units.end() ? nullptr : &*found;
+}
+
+/// The unit that is `written` but for the case of letters. A capital M in front may be mega and stays unknown.
+const Unit* find_in_any_case(std::string_view written) {
+  if (written.starts_with('M')) {
+    return nullptr;
+  }
+  const std::string lower = lower_case(written);
+  for (const Alias& alias : kAliases) {
+    const Unit* const unit = lower_case(alias.written) == lower ? find_unit(alias.symbol) : nullptr;
+    if (unit != nullptr && means_the_same_in_capitals(written, *unit)) {
+      return unit;
+    }
+  }
+  for (const Unit& unit : all_units()) {
+    if (lower_case(unit.symbol) == lower && means_the_same_in_capitals(written, unit)) {
+      return &unit;
+    }
+  }
+  return nullptr;
+}
+
+std::optional<Unit> plain_unit(std::string_view symbol) {
+  const auto alias =
+      std::find_if(kAliases.begin(), kAliases.end(), [symbol](const Alias& known) { return known.written == symbol; });
+  const Unit* unit = find_unit(alias == kAliases.end() ? symbol : alias->symbol);
+  unit = unit == nullptr ? find_in_any_case(symbol) : unit;
+  return unit == nullptr ? std::nullopt : std::optional(*unit);
 }
 
 }  // namespace
@@ -110,14 +197,18 @@ const std::vector<Unit>& all_units() {
       {"rad/s", Dimension::AngularRate, 1.0, 0.0},
       {"deg/s", Dimension::AngularRate, kDegree, 0.0},
       {"deg/h", Dimension::AngularRate, kDegree / 3600.0, 0.0},
+      {"deg/min", Dimension::AngularRate, kDegree / 60.0, 0.0},
       {"mdeg/s", Dimension::AngularRate, kDegree * 1e-3, 0.0},
       {"mrad/s", Dimension::AngularRate, 1e-3, 0.0},
+      {"urad/s", Dimension::AngularRate, 1e-6, 0.0},
       {"rpm", Dimension::AngularRate, 6.0 * kDegree, 0.0},
       {"m/s^2", Dimension::SpecificForce, 1.0, 0.0},
       {"g", Dimension::SpecificForce, kStandardGravity, 0.0},
       {"mg", Dimension::SpecificForce, kStandardGravity * 1e-3, 0.0},
       {"ug", Dimension::SpecificForce, kStandardGravity * 1e-6, 0.0},
       {"mm/s^2", Dimension::SpecificForce, 1e-3, 0.0},
+      {"cm/s^2", Dimension::SpecificForce, 1e-2, 0.0},
+      {"mGal", Dimension::SpecificForce, 1e-5, 0.0},
       {"K", Dimension::Temperature, 1.0, 0.0},
       {"degC", Dimension::Temperature, 1.0, 273.15},
       {"rad", Dimension::Angle, 1.0, 0.0},

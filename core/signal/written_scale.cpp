@@ -104,8 +104,9 @@ std::string_view without_brackets(std::string_view text) {
 
 bool is_count(std::string_view word) { return std::find(kCounts.begin(), kCounts.end(), word) != kCounts.end(); }
 
-/// What a number stands before: `mg`, `LSB/(deg/s)` or `mg/LSB`. Nothing else has a unit.
-std::optional<WrittenScale> sized(double number, std::string_view text, const IsUnit& is_unit) {
+/// What a number stands before: `mg`, `LSB/(deg/s)` or `mg/LSB`. Nothing else has a unit. Without a blank between them
+/// (`131LSB/dps`) it takes the word for a count: `2g` alone may be the range of the sensor.
+std::optional<WrittenScale> sized(double number, std::string_view text, const IsUnit& is_unit, bool apart) {
   WrittenScale found;
   found.scale = number;
   const std::size_t first = text.find('/');
@@ -115,20 +116,23 @@ std::optional<WrittenScale> sized(double number, std::string_view text, const Is
     text = without_brackets(text.substr(first + 1));
   } else if (last != std::string_view::npos && is_count(trimmed(text.substr(last + 1)))) {
     text = without_brackets(text.substr(0, last));
+  } else if (!apart) {
+    return std::nullopt;
   }
   found.unit = trimmed(text);
   return is_unit(found.unit) && !found.unit.empty() ? std::optional(found) : std::nullopt;
 }
 
-/// `0.061 mg`, `340 LSB/degC + 36.53`
+/// `0.061 mg`, `131LSB/dps`, `340 LSB/degC + 36.53`
 std::optional<WrittenScale> number_first(std::string_view text, const IsUnit& is_unit) {
   std::string_view rest = text;
   const auto number = take_number(rest);
-  if (!number || !rest.starts_with(' ')) {
+  if (!number) {
     return std::nullopt;
   }
+  const bool apart = rest.starts_with(' ');
   rest = trimmed(rest);
-  if (auto found = sized(*number, rest, is_unit)) {
+  if (auto found = sized(*number, rest, is_unit, apart)) {
     return found;
   }
   for (std::size_t at = rest.size(); at-- > 1;) {
@@ -137,7 +141,7 @@ std::optional<WrittenScale> number_first(std::string_view text, const IsUnit& is
     }
     std::string_view tail = rest.substr(at);
     const auto shift = take_affine(tail, true);
-    auto found = shift && tail.empty() ? sized(*number, trimmed(rest.substr(0, at)), is_unit) : std::nullopt;
+    auto found = shift && tail.empty() ? sized(*number, trimmed(rest.substr(0, at)), is_unit, apart) : std::nullopt;
     if (found) {
       found->offset = shift->offset;
       return found;

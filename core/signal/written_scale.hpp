@@ -7,7 +7,7 @@
 ///
 ///     deg/s/131             a 131st of a deg/s           deg/s*0.0076    the same as a product
 ///     degC/340+36.53        c / 340 + 36.53 degC         0.061 mg        a number of them
-///     raw/340+36.53 degC    the formula of the sheet     131 LSB/(deg/s), 0.061 mg/LSB    the sensitivity
+///     raw/340+36.53 degC    the formula of the sheet     131 LSB/(deg/s), 0.061mg/LSB     the sensitivity
 ///
 /// In the address of a request a `+` that is not written `%2B` arrives as a blank: `degC/340 36.53` means the same.
 #include <functional>

@@ -1,5 +1,6 @@
 #include "schema/json/recording_spec.hpp"
 
+#include "core/signal/column_unit.hpp"
 #include "core/signal/text.hpp"
 #include "schema/json/recording_tags.hpp"
 
@@ -32,7 +33,7 @@ ColumnRole role_from_json(const std::string& column, const Json& document, const
   }
   role.axis = reader.text("axis").value_or("");
   if (const auto unit = reader.text("unit")) {
-    if (auto parsed = parse_unit(*unit)) {
+    if (auto parsed = parse_unit(*unit, role.quantity)) {
       role.unit = *parsed;
     } else {
       faults.add(reader.pointer("unit"), parsed.error());
@@ -215,7 +216,7 @@ Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
       role.axis.clear();
     }
     if (parts.size() > 2 || unit_at_once) {
-      auto unit = parse_unit(parts.back());
+      auto unit = parse_unit(parts.back(), role.quantity);
       if (!unit) {
         return named(unit.error());
       }

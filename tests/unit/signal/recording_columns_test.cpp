@@ -84,6 +84,17 @@ TEST(RecordingColumns, TheLengthOfAVectorBesideItsAxesIsPassedOver) {
   EXPECT_TRUE(columns->use_of(2)->examined) << "which axis it is, its name does not say";
 }
 
+TEST(RecordingColumns, SayThatTheUnitOfATemperatureIsNotKnown) {
+  const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
+  const auto columns = RecordingColumns::read({}, {"gx (deg/s)", "temp (F)"}, samples);
+  ASSERT_TRUE(columns);
+  const auto use = columns->use_of(1);
+  EXPECT_FALSE(use->examined);
+  EXPECT_EQ(use->note, "The unit 'F' of column 'temp (F)' is not known; it counts as not stated.");
+  const auto known = RecordingColumns::read({}, {"gx (deg/s)", "temp (C)"}, samples);
+  EXPECT_EQ(known->use_of(1)->note, "");
+}
+
 TEST(StatedRate, IsTheConditionsOwn) {
   EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
   const Condition turning = *parse_condition("constant_rate:z:9:rad/s");

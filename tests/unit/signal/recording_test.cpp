@@ -97,7 +97,8 @@ TEST(InferRole, UnderstandsNamesPeopleUse) {
 }
 
 TEST(AssignRoles, RefusesAnUnknownUnitInTheNameOfASensor) {
-  for (const char* const name : {"gz [furlong]", "Accelerometer x (ft/s^2)", "time (fortnights)", "temp (F)"}) {
+  for (const char* const name :
+       {"gz [furlong]", "Accelerometer x (ft/s^2)", "time (fortnights)", "mag_x [G]", "ax [2g]"}) {
     const auto roles = assign_roles({}, {"gx", name});
     ASSERT_FALSE(roles) << name;
     EXPECT_EQ(roles.error().code, ErrorCode::UnknownUnit) << name;
@@ -112,6 +113,26 @@ TEST(AssignRoles, RefusesAnUnknownUnitInTheNameOfASensor) {
   RecordingSpec stated;
   stated.columns = {{"gz [furlong]", {Quantity::AngularRate, "z", unit("deg/s")}}};
   EXPECT_TRUE(assign_roles(stated, {"gz [furlong]"})) << "what the user states rules";
+}
+
+TEST(AssignRoles, ReadsALetterAsTheUnitThatTheQuantityHas) {
+  EXPECT_EQ(described(infer_role("temp (C)")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("Temp [C]")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("temperature (deg C)")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("ax [G]")), "specific_force x [g]");
+  EXPECT_EQ(described(infer_role("X (G)")), "unspecified [-]") << "may be gauss";
+  EXPECT_EQ(described(infer_role("time (\u03bcs)")), "time [us]");
+}
+
+TEST(AssignRoles, TakesATemperatureWithoutItsUnitWhereThatIsNotKnown) {
+  // `temp (F)` refused the whole file.
+  const auto roles = assign_roles({}, {"gx", "temp (F)"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(1)), "temperature [-]");
+  EXPECT_EQ(unknown_unit_of_temperature("temp (F)"), "F");
+  EXPECT_EQ(unknown_unit_of_temperature("temp (C)"), "");
+  EXPECT_EQ(unknown_unit_of_temperature("temp (raw)"), "");
+  EXPECT_EQ(unknown_unit_of_temperature("gx (F)"), "");
 }
 
 TEST(AssignRoles, TakesCountsInTheNameOfASensorForNoUnitOfTime) {

@@ -1,6 +1,6 @@
 #include "core/signal/unit.hpp"
 
-#include "core/signal/quantity.hpp"
+#include "core/signal/column_unit.hpp"
 
 #include <gmock/gmock.h>
 
@@ -92,6 +92,49 @@ TEST(Unit, TakesAScaleAndAnOffsetInTheFormsOfDataSheets) {
   EXPECT_DOUBLE_EQ(parse_unit("rad s^-1*1e-3")->to_si(2.0), 2e-3);
 }
 
+TEST(Unit, ReadsWhatToolsAndPeopleWriteInHeaders) {
+  const std::vector<std::pair<const char*, const char*>> spellings{
+      {"DPS", "deg/s"},       {"Deg/s", "deg/s"},   {"RAD/S", "rad/s"},   {"rads/s", "rad/s"},
+      {"º/s", "deg/s"},       {"˚/s", "deg/s"},     {"°/hr", "deg/h"},    {"deg/hour", "deg/h"},
+      {"deg/min", "deg/min"}, {"µrad/s", "urad/s"}, {"μrad/s", "urad/s"}, {"RPM", "rpm"},
+      {"m/s**2", "m/s^2"},    {"m*s**-2", "m/s^2"}, {"mps2", "m/s^2"},    {"cm/s^2", "cm/s^2"},
+      {"cm/s²", "cm/s^2"},    {"mGal", "mGal"},     {"g0", "g"},          {"gn", "g"},
+      {"μg", "ug"},           {"msec", "ms"},       {"usec", "us"},       {"μs", "us"},
+      {"Seconds", "s"},       {"deg C", "degC"},    {"Deg C", "degC"},    {"º C", "degC"},
+      {"Celsius", "degC"},    {"μT", "uT"},         {"Counts", "1"},
+  };
+  for (const auto& [written, symbol] : spellings) {
+    const auto unit = parse_unit(written);
+    ASSERT_TRUE(unit) << unit.error().message;
+    EXPECT_EQ(unit->symbol, symbol) << written;
+  }
+  EXPECT_DOUBLE_EQ(parse_unit("deg/min")->to_si(180.0 * 60.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("urad/s")->to_si(2e6), 2.0);
+  EXPECT_DOUBLE_EQ(parse_unit("cm/s^2")->to_si(980.665), 9.80665);
+  EXPECT_DOUBLE_EQ(parse_unit("mGal")->to_si(1e5), 1.0) << "1 Gal is 1 cm/s^2";
+}
+
+TEST(Unit, TakesALetterForWhatItCanOnlyMeanThere) {
+  EXPECT_EQ(parse_unit("G", Quantity::SpecificForce)->symbol, "g");
+  EXPECT_EQ(parse_unit("mG", Quantity::ReferenceSpecificForce)->symbol, "mg");
+  EXPECT_EQ(parse_unit("C", Quantity::Temperature)->symbol, "degC");
+  EXPECT_EQ(parse_unit("mg", Quantity::SpecificForce)->symbol, "mg");
+  EXPECT_FALSE(parse_unit("G", Quantity::MagneticField)) << "gauss";
+  EXPECT_FALSE(parse_unit("G", Quantity::Unspecified));
+  EXPECT_FALSE(parse_unit("Mg", Quantity::SpecificForce));
+  EXPECT_FALSE(parse_unit("C", Quantity::AngularRate));
+}
+
+TEST(Unit, ReadsASensitivityWithoutABlankButNoRange) {
+  EXPECT_DOUBLE_EQ(parse_unit("131LSB/dps")->to_si(131.0 * 180.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("8.75mdps/LSB")->to_si(180e3 / 8.75), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("16384LSB/g")->to_si(16384.0), 9.80665);
+  EXPECT_DOUBLE_EQ(parse_unit("340LSB/degC+36.53")->to_si(0.0), 36.53 + 273.15);
+  for (const char* const symbol : {"2g", "16g", "2000dps", "250deg/s"}) {
+    EXPECT_FALSE(parse_unit(symbol)) << symbol << " may be the range";
+  }
+}
+
 TEST(Unit, TakesThePluralOfACountForNoTime) {
   // 'LSB' or 'digit' and 's' were counts of a second.
   for (const char* const symbol : {"LSBs", "lsbs", "digits", "digit", "count", "counts", "LSb"}) {
@@ -122,7 +165,8 @@ TEST(Unit, SaysWhatIsWrongWithAScaleAndHowToWriteIt) {
 }
 
 TEST(Unit, NamesTheUnknownSymbolAndTheKnownOnes) {
-  for (const char* const symbol : {"furlong", "G", "deg/S", " s", "M/S^2", "kg"}) {
+  for (const char* const symbol :
+       {"furlong", "G", "C", " s", "M/S^2", "kg", "Mg", "MG", "MS", "S", "Mdps", "MRAD/S", "UT", "t"}) {
     const auto unit = parse_unit(symbol);
     ASSERT_FALSE(unit) << symbol;
     EXPECT_EQ(unit.error().code, ErrorCode::UnknownUnit);
