@@ -55,14 +55,16 @@ constexpr std::array kUnitWords{
     UnitWord{"radps", "rad/s"}, UnitWord{"rads", "rad/s"},     UnitWord{"mps2", "m/s^2"},  UnitWord{"ms2", "m/s^2"},
     UnitWord{"g", "g"},         UnitWord{"mg", "mg"},          UnitWord{"degc", "degC"},   UnitWord{"c", "degC"},
     UnitWord{"k", "K"},         UnitWord{"ut", "uT"},          UnitWord{"seconds", "s"},   UnitWord{"celsius", "degC"},
-    UnitWord{"gs", "g"},        UnitWord{"microteslas", "uT"},
+    UnitWord{"gs", "g"},        UnitWord{"microteslas", "uT"}, UnitWord{"mdps", "mdeg/s"}, UnitWord{"mradps", "mrad/s"},
+    UnitWord{"degph", "deg/h"},
 };
 
 /// The same in several words.
 constexpr std::array kUnitPhrases{
-    UnitWord{"_deg_per_s", "_degps"},
-    UnitWord{"_rad_per_s", "_radps"},
-    UnitWord{"_m_per_s2", "_mps2"},
+    UnitWord{"_deg_per_s", "_degps"},   UnitWord{"_rad_per_s", "_radps"}, UnitWord{"_m_per_s2", "_mps2"},
+    UnitWord{"_deg_s", "_degps"},       UnitWord{"_rad_s", "_radps"},     UnitWord{"_mrad_s", "_mradps"},
+    UnitWord{"_m_s2", "_mps2"},         UnitWord{"_m_s^2", "_mps2"},      UnitWord{"_deg_per_sec", "_degps"},
+    UnitWord{"_rad_per_sec", "_radps"}, UnitWord{"_deg_h", "_degph"},     UnitWord{"_deg_per_h", "_degph"},
 };
 
 /// Words in front of a quantity that do not change it.
@@ -243,11 +245,53 @@ std::string_view without_plain_words(std::string_view name) {
 std::string with_short_unit(std::string_view name) {
   std::string text(name);
   for (const UnitWord& phrase : kUnitPhrases) {
-    if (text.ends_with(phrase.word)) {
+    if (lower_case(text).ends_with(phrase.word)) {
       text.replace(text.size() - phrase.word.size(), phrase.word.size(), phrase.symbol);
     }
   }
   return text;
+}
+
+/// `gyro_rad[0]`, `accelerometer_m_s2[2]` with the axis as a letter, `gyro_x_radps`, `accelerometer_z_mps2`: what PX4's
+/// ulog2csv writes, whose `gyro_rad` are rad/s. Itself where there is no quantity in front: an `a[0]` may be anything.
+std::string with_axis_of_index(std::string_view name) {
+  constexpr std::size_t kIndex = std::string_view("[0]").size();
+  if (name.size() <= kIndex || !name.ends_with(']') || name[name.size() - kIndex] != '[' ||
+      name[name.size() - 2] < '0' || name[name.size() - 2] > '2') {
+    return std::string(name);
+  }
+  const std::string axis{'_', static_cast<char>('x' + (name[name.size() - 2] - '0'))};
+  const std::string array = with_short_unit(name.substr(0, name.size() - kIndex));
+  const auto is_quantity = [](std::string_view text) {
+    const std::string stem = squash(text);
+    return stem.size() > 2 && quantity_of(stem, std::nullopt) != Quantity::Unspecified;
+  };
+  if (is_quantity(array)) {
+    return array + axis;
+  }
+  const std::size_t cut = std::min(array.rfind('_'), array.size());
+  if (!is_quantity(array.substr(0, cut))) {
+    return std::string(name);
+  }
+  const std::string unit = array.substr(cut);
+  return array.substr(0, cut) + axis + (lower_case(unit) == "_rad" ? "_radps" : unit);
+}
+
+/// The name as it is read. `linear_acceleration_x` is what ROS calls a specific force; phones write it in words of
+/// their own, `Linear Acceleration x`, for one without gravity, which is none.
+std::string as_read(std::string_view written) {
+  constexpr std::string_view kLinear = "linear_";
+  std::string_view name = without_plain_words(written);
+  if (lower_case(name).starts_with("linear_acceleration")) {
+    name.remove_prefix(kLinear.size());
+  }
+  return with_short_unit(with_axis_of_index(name));
+}
+
+/// True for a name that is that of a sensor by what as_read() makes of it: beside a column that is so by its plain name
+/// it is another thing.
+bool is_second_choice(std::string_view written) {
+  return as_read(written) != with_short_unit(without_plain_words(written));
 }
 
 bool states_no_unit(std::string_view bracket) {
@@ -262,7 +306,7 @@ struct UnknownUnit {
 };
 
 std::optional<UnknownUnit> unknown_unit(std::string_view written) {
-  const std::string text = with_short_unit(without_plain_words(written));
+  const std::string text = as_read(written);
   std::string_view name = text;
   const std::string_view bracket = take_bracket(name);
   const auto role = infer_bare(name, std::nullopt);
@@ -288,6 +332,11 @@ Status check_bracketed_unit(std::string_view written) {
 std::string unknown_unit_of_temperature(std::string_view name) {
   const auto unknown = unknown_unit(name);
   return unknown && unknown->quantity == Quantity::Temperature ? unknown->symbol : std::string();
+}
+
+bool states_unit(std::string_view name) {
+  const auto unit = known_unit(take_bracket(name));
+  return unit && unit->dimension != Dimension::One;
 }
 
 std::vector<std::string> inertial_structs(const ColumnNames& names) {
@@ -323,11 +372,21 @@ std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
     roles.push_back(known ? ColumnRole{member->quantity, std::string(member->axis), known_unit(member->unit)}
                           : infer_role(name));
   }
+  std::vector<bool> second(names.size());
+  std::transform(names.begin(), names.end(), second.begin(), is_second_choice);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = 0; j < names.size() && second[i]; ++j) {
+      if (roles[j].quantity == roles[i].quantity && roles[j].axis == roles[i].axis && !second[j]) {
+        roles[i] = {};
+        break;
+      }
+    }
+  }
   return roles;
 }
 
 ColumnRole infer_role(std::string_view written) {
-  const std::string text = with_short_unit(without_plain_words(written));
+  const std::string text = as_read(written);
   std::string_view name = text;
   const std::string_view bracket = take_bracket(name);
   if (bracket.empty()) {

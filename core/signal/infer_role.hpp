@@ -19,7 +19,9 @@ namespace driftlab {
 ///   specific force   a acc accel accelerometer acceleration f specific_force, likewise
 ///   magnetic field   m mag magnetometer magnetic_field, likewise
 ///
-/// Leading words that change nothing are skipped: raw_acceleration_x_gs, imu_gyr_x and imu.wb_z are understood;
+/// and also in the names that tools give: a unit behind `_` in one word or several (gyro_x_dps, gyro_x_rad_s,
+/// acc_x_m_s2), an index for the axis (gyro_rad[0], accelerometer_m_s2[2], as PX4's ulog2csv), linear_acceleration_x as
+/// in ROS. Leading words that change nothing are skipped: raw_acceleration_x_gs, imu_gyr_x and imu.wb_z are understood;
 /// GyroscopeUncalibrated is not. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
 [[nodiscard]] ColumnRole infer_role(std::string_view name);
 
@@ -32,7 +34,8 @@ namespace driftlab {
 /// nothing of the others.
 [[nodiscard]] bool reads_names(const RecordingSpec& spec);
 
-/// The role of each column of a file: that of its struct, else that of its own name.
+/// The role of each column of a file: that of its struct, else that of its own name. Of two for one quantity and axis
+/// an index or a linear_acceleration yields to the plainer name.
 [[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in
@@ -40,6 +43,9 @@ namespace driftlab {
 /// Words for raw numbers are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time (UTC)`), and a name that implies
 /// no role may have anything in brackets. Error: UnknownUnit with fields `column` and `unit`.
 [[nodiscard]] Status check_bracketed_unit(std::string_view name);
+
+/// True where a known unit stands in brackets behind the name, whatever the name is.
+[[nodiscard]] bool states_unit(std::string_view name);
 
 /// What stands in brackets behind the name of a temperature and is no known unit, `F` of `temp (F)`; empty for any
 /// other name.

@@ -172,8 +172,16 @@ Result<ColumnUse> RecordingColumns::use_of(std::size_t index, const Passed& pass
     }
     return fail(holes.error());
   }
-  return ColumnUse{
-      true, role->unit ? "" : "The unit of column '" + name(index) + "' is not stated; its unit is 1.", {}};
+  if (role->unit) {
+    return ColumnUse{true, "", {}};
+  }
+  if (guessed_ && role->quantity == Quantity::Unspecified && states_unit(name(index))) {
+    return ColumnUse{true,
+                     "The name of column '" + name(index) +
+                         "' does not say which sensor and axis it is, so its unit is not read and is 1.",
+                     {}};
+  }
+  return ColumnUse{true, "The unit of column '" + name(index) + "' is not stated; its unit is 1.", {}};
 }
 
 ChannelSurvey RecordingColumns::survey(std::size_t index, const Passed& passed) const {

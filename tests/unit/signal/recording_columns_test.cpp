@@ -95,6 +95,18 @@ TEST(RecordingColumns, SayThatTheUnitOfATemperatureIsNotKnown) {
   EXPECT_EQ(known->use_of(1)->note, "");
 }
 
+TEST(RecordingColumns, DoNotSayThatAUnitIsNotStatedWhereItIs) {
+  const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
+  const auto columns = RecordingColumns::read({}, {"acc_l_x [mg]", "acc_l_y", "acc_l_z [LSB]"}, samples);
+  ASSERT_TRUE(columns);
+  EXPECT_EQ(
+      columns->use_of(0)->note,
+      "The name of column 'acc_l_x [mg]' does not say which sensor and axis it is, so its unit is not read and is "
+      "1.");
+  EXPECT_EQ(columns->use_of(1)->note, "The unit of column 'acc_l_y' is not stated; its unit is 1.");
+  EXPECT_EQ(columns->use_of(2)->note, "The unit of column 'acc_l_z [LSB]' is not stated; its unit is 1.");
+}
+
 TEST(StatedRate, IsTheConditionsOwn) {
   EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
   const Condition turning = *parse_condition("constant_rate:z:9:rad/s");

@@ -115,6 +115,48 @@ TEST(AssignRoles, RefusesAnUnknownUnitInTheNameOfASensor) {
   EXPECT_TRUE(assign_roles(stated, {"gz [furlong]"})) << "what the user states rules";
 }
 
+TEST(InferRole, UnderstandsTheNamesThatToolsGive) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"linear_acceleration_x [m/s^2]", "specific_force x [m/s^2]"},
+      {"linear_acceleration.z", "specific_force z [-]"},
+      {"imu.linear_acceleration_y", "specific_force y [-]"},
+      {"gyro_x_rad_s", "angular_rate x [rad/s]"},
+      {"gyro_x_deg_s", "angular_rate x [deg/s]"},
+      {"Gyro_Z_Deg_S", "angular_rate z [deg/s]"},
+      {"gyro_x_mdps", "angular_rate x [mdeg/s]"},
+      {"gyro_y_mrad_s", "angular_rate y [mrad/s]"},
+      {"acc_x_m_s2", "specific_force x [m/s^2]"},
+      {"acc_x_m_s^2", "specific_force x [m/s^2]"},
+      {"gyro_rad[0]", "angular_rate x [rad/s]"},
+      {"gyro_rad[2]", "angular_rate z [rad/s]"},
+      {"accelerometer_m_s2[1]", "specific_force y [m/s^2]"},
+      {"gyro[1]", "angular_rate y [-]"},
+      {"angular_velocity[0]", "angular_rate x [-]"},
+      // Nothing to go by, or something else:
+      {"gyro_rad[3]", "unspecified [-]"},
+      {"q[0]", "unspecified [-]"},
+      {"a[0]", "unspecified [-]"},
+      {"gyro_x_m_s2", "unspecified [-]"},
+      {"gyro_clip[0]", "unspecified [-]"},
+      {"gyro_x_rad", "unspecified [-]"},
+      {"Linear Acceleration x (m/s^2)", "unspecified [-]"},
+      {"[0]", "unspecified [-]"},
+  };
+  for (const auto& [name, expected] : cases) {
+    EXPECT_EQ(described(infer_role(name)), expected) << name;
+  }
+}
+
+TEST(AssignRoles, PrefersThePlainNameToTheOneOfATool) {
+  const auto roles = assign_roles({}, {"acc_x (g)", "linear_acceleration_x (g)", "gyro[0]", "gyro_y", "gyro[1]"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "specific_force x [g]");
+  EXPECT_EQ(described(*roles->at(1)), "unspecified [-]");
+  EXPECT_EQ(described(*roles->at(2)), "angular_rate x [-]");
+  EXPECT_EQ(described(*roles->at(3)), "angular_rate y [-]");
+  EXPECT_EQ(described(*roles->at(4)), "unspecified [-]");
+}
+
 TEST(AssignRoles, ReadsALetterAsTheUnitThatTheQuantityHas) {
   EXPECT_EQ(described(infer_role("temp (C)")), "temperature [degC]");
   EXPECT_EQ(described(infer_role("Temp [C]")), "temperature [degC]");
