@@ -80,6 +80,7 @@ class CsvDecoder {
   std::uint64_t inner_comments_ = 0;  ///< between rows
   std::uint64_t rows_ = 0;
   bool last_line_ = false;     ///< the line being read has no end: the file stops in it
+  std::uint64_t header_ = 0;   ///< line of the names; 0 without
   bool units_follow_ = false;  ///< the next line is the second of two header lines
   ColumnNames names_;          ///< of the file's columns; empty until the first row is seen
   std::size_t stride_ = 0;     ///< values a row: the file's columns, and the time made from a stated rate
@@ -306,6 +307,7 @@ Status CsvDecoder::take_first_line(std::string_view line) {
   }
   fast_ = choose_fast_reader(dialect_);
   const CsvFirstLine first = read_first_line(line, dialect_, sink_);
+  header_ = dialect_.has_names ? line_ : 0;
   units_follow_ = dialect_.has_names && !dialect_.units.empty();
   auto status = begin(first);
   return status && first.is_row ? take_row_carefully(line) : status;
@@ -346,6 +348,14 @@ Status CsvDecoder::take_row_carefully(std::string_view line) {
   if (cells.size() != names_.size() && last_line_ && cells.size() < names_.size() && rows_ > 0) {
     torn_ = true;
     return {};
+  }
+  if (cells.size() > names_.size() && rows_ == 0 && header_ > 0) {
+    const std::string header = std::to_string(header_);
+    return at_line(ErrorCode::RaggedRow, "has " + with_count(cells.size(), "value") + "; the header in line " + header +
+                                             " has " + std::to_string(names_.size()) +
+                                             "; correct it, or if that line is no header, leave it out with "
+                                             "--skip-lines " +
+                                             header + ".");
   }
   if (cells.size() != names_.size()) {
     return at_line(ErrorCode::RaggedRow, "has " + with_count(cells.size(), "value") + "; the first row has " +

@@ -1,5 +1,6 @@
 #include "core/read/csv_header.hpp"
 
+#include "core/read/csv_left_out.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -107,7 +108,12 @@ void note_dialect(const text::Dialect& dialect, std::uint64_t comments, ColumnSi
     sink.note(with_count(comments, "comment line above the first row was skipped.",
                          "comment lines above the first row were skipped."));
   }
-  if (dialect.preamble_lines > 0) {
+  if (dialect.preamble_lines > 0 && !dialect.has_names) {
+    CsvLeftOut banner;
+    banner.add(dialect.preamble_line, dialect.preamble_lines, dialect.preamble_text);
+    banner.note(sink, "line above the rows is no sample and was skipped",
+                "lines above the rows are no samples and were skipped");
+  } else if (dialect.preamble_lines > 0) {
     sink.note(with_count(dialect.preamble_lines, "line above the names of the columns is no sample and was skipped.",
                          "lines above the names of the columns are no samples and were skipped."));
   }

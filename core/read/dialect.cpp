@@ -1,6 +1,7 @@
 #include "core/read/dialect.hpp"
 
 #include "core/read/text_shape.hpp"
+#include "core/signal/infer_role.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/text.hpp"
@@ -196,6 +197,31 @@ std::size_t find_start(const Reading& reading) {
   return 0;
 }
 
+/// True for a line that names a quantity: the names of columns, though fewer than a row has cells.
+bool names_quantities(const Cells& line) {
+  return std::any_of(line.cells.begin(), line.cells.end(),
+                     [](const std::string& cell) { return infer_role(cell).quantity != Quantity::Unspecified; });
+}
+
+/// The first row below a banner, lines with words that are narrower than the rows: what a board says of itself before
+/// it measures. 0 where the table starts with the first line, and where what is narrower may be names: as R writes them
+/// above rows that begin with their number, or one name above numbers with a decimal comma.
+std::size_t find_row_below_banner(const Reading& reading) {
+  const auto& lines = reading.lines;
+  const auto row =
+      std::find_if(lines.begin(), lines.end(), [&](const Cells& line) { return line.cells.size() >= reading.width; });
+  if (reading.width <= 2 || row == lines.end() || !is_row(*row)) {
+    return 0;
+  }
+  const std::string& first_cell = row->cells.front();
+  const bool numbered = first_cell == "0" || first_cell == "1";
+  const bool banner = std::all_of(lines.begin(), row, [&](const Cells& line) {
+    const bool one_less = line.cells.size() > 1 && line.cells.size() + 1 == reading.width;
+    return line.numbers < line.filled && !(one_less && numbered) && !names_quantities(line);
+  });
+  return banner ? static_cast<std::size_t>(row - lines.begin()) : 0;
+}
+
 std::string_view without_brackets(std::string_view cell) {
   const bool bracketed =
       cell.size() > 1 && ((cell.front() == '(' && cell.back() == ')') || (cell.front() == '[' && cell.back() == ']'));
@@ -359,7 +385,8 @@ Dialect find_dialect(std::string_view text, bool whole) {
     const char separator = shape == Shape::Semicolons ? ';' : shape == Shape::Tabs ? '\t' : ',';
     reading = read_as(head, separator, false);
   }
-  const std::size_t start = find_start(*reading);
+  const std::size_t below_preamble = find_start(*reading);
+  const std::size_t start = below_preamble > 0 ? below_preamble : find_row_below_banner(*reading);
   for (std::size_t i = 0; i < start; ++i) {
     const auto rate = stated_rate(head.content[i].text);
     dialect.rate_hz = dialect.rate_hz ? dialect.rate_hz : rate;
@@ -371,6 +398,8 @@ Dialect find_dialect(std::string_view text, bool whole) {
   dialect.fraction_of_numbers = reading->numbers;
   dialect.first_line = head.content[start].number;
   dialect.preamble_lines = start;
+  dialect.preamble_line = start > 0 ? head.content.front().number : 0;
+  dialect.preamble_text = start > 0 ? std::string(trim(head.content.front().text)) : "";
   dialect.has_names = !is_row(reading->lines[start]);
   if (dialect.has_names) {
     dialect.units = find_units(*reading, start);

@@ -25,6 +25,8 @@ struct Dialect {
   std::vector<std::size_t> dates;    ///< columns in which the first row holds a date and time
   std::vector<std::string> names;    ///< of a comment line above a table without names; empty without one
   std::size_t preamble_lines = 0;    ///< lines above the table that are neither blank nor comments: `Fs,100`
+  std::uint64_t preamble_line = 0;   ///< the first of them, from 1
+  std::string preamble_text;         ///< what stands in it
   std::optional<double> rate_hz;     ///< a rate that a comment or the preamble states
   double fraction_of_numbers = 0.0;  ///< of the cells seen that are not empty
 };

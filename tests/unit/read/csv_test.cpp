@@ -227,6 +227,36 @@ TEST(Csv, IgnoresTheSeparatorBehindEachRowBelowLinesAboutTheSensor) {
   EXPECT_EQ(outcome.decoded.rows, 2U);
 }
 
+TEST(Csv, SkipsTheBannerOfABoardAboveRowsWithoutNamesAndSaysSo) {
+  // `MPU6050 ready` became the header of one or two names, and the first row was refused for its six values.
+  for (const std::string separator : {",", "\t", " ", ";", ", "}) {
+    const std::string row = "0.5" + separator + "-1.25" + separator + "1e-3" + separator + "4" + "\n";
+    const Outcome outcome = decode_bytes("MPU6050 ready\n" + row + row + row);
+    ASSERT_FALSE(outcome.error) << separator << outcome.message;
+    EXPECT_FALSE(outcome.decoded.has_header);
+    EXPECT_THAT(outcome.decoded.names, ElementsAre("0", "1", "2", "3")) << separator;
+    EXPECT_THAT(column(outcome, 1), ElementsAre(-1.25, -1.25, -1.25)) << separator;
+    EXPECT_THAT(outcome.decoded.notes,
+                ElementsAre("1 line above the rows is no sample and was skipped (line 1: \"MPU6050 ready\")."));
+  }
+  const Outcome several = decode_bytes("# log\nAdafruit MPU6050 test!\nFound a chip 2\n\n1 2 3 4 5 6\n2 3 4 5 6 7\n");
+  ASSERT_FALSE(several.error) << several.message;
+  EXPECT_EQ(several.decoded.rows, 2U);
+  EXPECT_THAT(several.decoded.notes, Contains("2 lines above the rows are no samples and were skipped (the first is "
+                                              "line 2: \"Adafruit MPU6050 test!\")."));
+  EXPECT_EQ(decode_bytes("Fs,100\n7,2,3\n4,5,6\n").decoded.names.size(), 4U) << "its rate gives the time";
+}
+
+TEST(Csv, NamesTheOptionWhereANarrowFirstLineMayBeNames) {
+  const std::string sentence =
+      "Line 2 has 3 values; the header in line 1 has 2; correct it, or if that line is no "
+      "header, leave it out with --skip-lines 1.";
+  EXPECT_EQ(decode_bytes("gx,gy\n1,2,3\n4,5,6\n").message, sentence) << "names that are too few are not dropped";
+  EXPECT_EQ(decode_bytes("a b\n1 2 3\n2 5 6\n").message, sentence) << "R numbers the rows and not their names";
+  EXPECT_EQ(decode_bytes("value\n0,5\n1,5\n").error, ErrorCode::RaggedRow) << "a decimal comma, or two columns";
+  EXPECT_EQ(decode_bytes("5\n1,2,3\n4,5,6\n").error, ErrorCode::RaggedRow) << "a row that is torn";
+}
+
 TEST(Csv, KeepsAnEmptyFirstNameBeforeATab) {
   EXPECT_THAT(decode_bytes("\tgx\tgy\n0\t1\t2\n1\t3\t4\n").decoded.names, ElementsAre("0", "gx", "gy"));
 }
