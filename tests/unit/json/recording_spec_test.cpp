@@ -134,6 +134,18 @@ TEST(ParseColumns, WhatHasNoAxisMayHaveItsUnitAtOnce) {
   EXPECT_EQ(parse_columns("0=time:furlong").error().code, ErrorCode::UnknownUnit);
 }
 
+TEST(ParseColumns, ReadsUnitsByWhatTheColumnMeasures) {
+  const auto columns = parse_columns(
+      "1=angular_rate:x:LSBs,2=angular_rate:y:131LSB/dps,3=angular_rate:z:8.75mdps/LSB,4=specific_force:x:G,"
+      "5=temperature::C");
+  ASSERT_TRUE(columns) << columns.error().message;
+  EXPECT_EQ(columns->at("1").unit->symbol, "1");
+  EXPECT_EQ(columns->at("2").unit->symbol, "131LSB/dps");
+  EXPECT_EQ(columns->at("4").unit->symbol, "g");
+  EXPECT_EQ(columns->at("5").unit->symbol, "degC");
+  EXPECT_EQ(parse_columns("1=magnetic_field:x:G").error().code, ErrorCode::UnknownUnit) << "gauss";
+}
+
 TEST(ParseColumns, NamesTheColumnAtFault) {
   const struct {
     const char* text;
