@@ -2,6 +2,7 @@
 #include "clients/cli/regress_input.hpp"
 #include "clients/cli/regress_outputs.hpp"
 #include "clients/cli/remote_upload.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -24,6 +25,29 @@ tl::expected<std::map<std::string, std::string>, Failure> labels_of(const std::s
                 : tl::unexpected(Failure{labels.error(), Exit::BadInput});
 }
 
+std::string label_text(const std::map<std::string, std::string>& labels) {
+  std::string text;
+  for (const std::string& word : label_words(labels)) {
+    text += (text.empty() ? "" : ",") + word;
+  }
+  return text;
+}
+
+/// One line for each label under which the daemon has files of an arm already.
+void say_kept(const std::vector<KeptRecording>& kept, const std::string& arm, std::size_t of) {
+  std::map<std::string, std::size_t> counts;
+  for (const KeptRecording& recording : kept) {
+    ++counts[label_text(recording.labels)];
+  }
+  for (const auto& [label, count] : counts) {
+    std::fprintf(stderr, "driftlab: %s: the bytes of %s are stored already %s and are compared as they are.\n",
+                 arm.c_str(),
+                 count == of ? with_count(of, "file").c_str()
+                             : (std::to_string(count) + " of " + with_count(of, "file")).c_str(),
+                 label.empty() ? "without a label" : ("under " + label).c_str());
+  }
+}
+
 /// Sends the files of a run and has each characterised; arms then name what the daemon has.
 class ArmSender {
  public:
@@ -31,7 +55,10 @@ class ArmSender {
       : client_(client), device_(run.device), models_(flags.models), lines_(flags.file), files_(files) {}
 
   /// The arm as the job's request has it. With labels it is all recordings that have them, those sent now among them.
-  [[nodiscard]] tl::expected<Json, Failure> sent(const WrittenArm& arm) {
+  /// What the daemon has under other labels keeps them, and the arm is then the files that it names. Where nothing has
+  /// the arm's own label it goes by that of its newest recording: a label that nothing has would be a release without
+  /// recordings, and a look at it another look at the same ones.
+  [[nodiscard]] tl::expected<Json, Failure> sent(const WrittenArm& arm, const std::string& name) {
     if (!arm.special.empty()) {
       return Json(arm.special);
     }
@@ -39,10 +66,8 @@ class ArmSender {
     if (!labels) {
       return tl::unexpected(labels.error());
     }
+    kept_.clear();
     Json document = Json::object();
-    if (!labels->empty()) {
-      document["labels"] = *labels;
-    }
     Json recordings = Json::array();
     bool label_says_all = true;  // what was sent now has it; what the request says of a recording beside needs the list
     for (const WrittenRecording& recording : arm.recordings) {
@@ -51,7 +76,21 @@ class ArmSender {
       if (!one) {
         return tl::unexpected(one.error());
       }
-      recordings.push_back(std::move(*one));
+      if (std::find(recordings.begin(), recordings.end(), *one) == recordings.end()) {  // two files of the same bytes
+        recordings.push_back(std::move(*one));
+      }
+    }
+    if (!kept_.empty()) {
+      say_kept(kept_, name, arm.recordings.size());
+      label_says_all = false;
+      if (!labels->empty() && kept_.size() == arm.recordings.size()) {
+        *labels = std::max_element(kept_.begin(), kept_.end(), [](const KeptRecording& a, const KeptRecording& b) {
+                    return a.id < b.id;  // ids begin with the time
+                  })->labels;
+      }
+    }
+    if (!labels->empty()) {
+      document["labels"] = *labels;
     }
     if (labels->empty() || !label_says_all) {
       document["recordings"] = std::move(recordings);
@@ -86,7 +125,12 @@ class ArmSender {
             bar_.show("upload " + recording.file, before + kUploaded * fraction / static_cast<double>(files_));
           });
       if (!id) {
-        return tl::unexpected(id.error());
+        auto kept = kept_under_other_labels(client_, id.error(), labels);
+        if (!kept) {
+          return tl::unexpected(kept.error());
+        }
+        id = Json(kept->id);
+        kept_.push_back(std::move(*kept));
       }
       if (auto analysed = characterise(*id); !analysed) {
         return tl::unexpected(analysed.error());
@@ -128,6 +172,7 @@ class ArmSender {
   FileFlags lines_;
   std::size_t files_;
   std::size_t done_ = 0;
+  std::vector<KeptRecording> kept_;  ///< of the arm that is being sent
   ProgressBar bar_;
 };
 
@@ -144,14 +189,14 @@ tl::expected<Json, Failure> request_of(HttpClient& client, const WrittenRegressi
   ArmSender sender(client, run, flags, files_in(run));
   Json inputs{{"device", run.device}};
   for (const auto& [name, arm] : {std::pair{"baseline", &run.baseline}, {"candidate", &run.candidate}}) {
-    auto sent = sender.sent(*arm);
+    auto sent = sender.sent(*arm, name);
     if (!sent) {
       return tl::unexpected(sent.error());
     }
     inputs[name] = std::move(*sent);
   }
   for (const WrittenArm& release : run.history) {
-    auto sent = sender.sent(release);
+    auto sent = sender.sent(release, "history");
     if (!sent) {
       return tl::unexpected(sent.error());
     }

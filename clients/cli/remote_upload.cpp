@@ -103,4 +103,31 @@ tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& d
   return id;
 }
 
+tl::expected<KeptRecording, Failure> kept_under_other_labels(HttpClient& client, const Failure& refusal,
+                                                             const std::map<std::string, std::string>& wanted) {
+  KeptRecording kept;
+  bool labels_alone = false;
+  for (const ErrorField& field : refusal.error.fields) {
+    kept.id = field.name == "recording_id" ? field.value : kept.id;
+    labels_alone = labels_alone || (field.name == "differs" && field.value == "labels");
+  }
+  if (!labels_alone || kept.id.empty()) {
+    return tl::unexpected(refusal);
+  }
+  const auto reply = client.get("/v1/recordings/" + kept.id);
+  if (!reply) {
+    return unreachable(reply.error());
+  }
+  const auto document = parse_json(reply->body);
+  if (reply->status != 200 || !document) {
+    return refused(*reply);
+  }
+  Faults faults;
+  kept.labels = recording_tags_from_json(document->value("metadata", Json::object()), "", faults).labels;
+  if (!faults.none() || kept.labels == wanted) {  // the same labels: session or time is other, which is for a PATCH
+    return tl::unexpected(refusal);
+  }
+  return kept;
+}
+
 }  // namespace driftlab::cli

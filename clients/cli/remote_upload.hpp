@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,16 @@ namespace driftlab::cli {
 [[nodiscard]] tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& device,
                                                       const InputFile& file, const RecordingTags& tags,
                                                       const std::function<void(double)>& sent);
+
+/// A recording that the daemon has of a file's bytes, and the labels under which it has it.
+struct KeptRecording {
+  std::string id;
+  std::map<std::string, std::string> labels;
+};
+
+/// What the daemon has of the bytes, where it refused an upload for nothing but other labels than `wanted`; for every
+/// other refusal the refusal itself.
+[[nodiscard]] tl::expected<KeptRecording, Failure> kept_under_other_labels(
+    HttpClient& client, const Failure& refusal, const std::map<std::string, std::string>& wanted);
 
 }  // namespace driftlab::cli

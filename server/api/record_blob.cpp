@@ -128,15 +128,22 @@ Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::s
                         budget_of(&Budgets::token_bytes), budgets);
 }
 
-/// A conflict with a recording that is there says by which request that one is changed.
+/// A conflict with a recording that is there says by which request that one is changed, and what is other: what the
+/// recording means, or its labels, session or time alone.
 Error naming_patch(Error error) {
-  for (const ErrorField& field : error.fields) {
-    if (error.code == ErrorCode::Conflict && field.name == "recording_id") {
-      error.message =
-          "The device has these bytes already with other metadata; change those with PATCH /v1/recordings/" +
-          field.value + ".";
-      break;
+  const auto field = [&](std::string_view name) -> std::string {
+    for (const ErrorField& each : error.fields) {
+      if (each.name == name) {
+        return each.value;
+      }
     }
+    return "";
+  };
+  if (const std::string id = field("recording_id"); error.code == ErrorCode::Conflict && !id.empty()) {
+    const bool tags = field("differs") == "labels";
+    error.message = std::string("The device has these bytes already with other ") +
+                    (tags ? "labels, session or recorded_at" : "metadata") +
+                    "; change those with PATCH /v1/recordings/" + id + ".";
   }
   return error;
 }

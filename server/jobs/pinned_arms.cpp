@@ -1,6 +1,7 @@
 #include "server/jobs/pinned_arms.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace driftlab::server {
@@ -148,6 +149,17 @@ class PinnedArms {
   Faults& faults_;
 };
 
+/// In order, for one text whatever the order of the recordings.
+std::vector<std::string> ids_in_both(const Json& one, const Json& other) {
+  std::vector<std::string> left = regressed_ids(one);
+  std::vector<std::string> right = regressed_ids(other);
+  std::sort(left.begin(), left.end());
+  std::sort(right.begin(), right.end());
+  std::vector<std::string> both;
+  std::set_intersection(left.begin(), left.end(), right.begin(), right.end(), std::back_inserter(both));
+  return both;
+}
+
 std::vector<std::string> labels_of(const Json& arms) {
   std::vector<std::string> labels;
   for (const Json& arm : arms) {
@@ -177,6 +189,11 @@ Result<Json> pinned_inputs(WrittenRegression& written, const Device& device, con
               {"candidate", arms.pinned(written.candidate)},
               {"history", Json::array()},
               {"excluded", Json::array()}};
+  if (faults.none()) {
+    for (const std::string& id : ids_in_both(inputs["baseline"], inputs["candidate"])) {
+      faults.add("/inputs/candidate", ErrorCode::InvalidArgument, "The recording " + id + " is in both arms.");
+    }
+  }
   for (std::size_t i = 0; i < written.history.size(); ++i) {
     if (Status found = arms.complete(written.history[i], "/inputs/history/" + std::to_string(i)); !found) {
       return fail(found.error());

@@ -414,6 +414,59 @@ class Templates(unittest.TestCase):
                     self.assertEqual(codes, [1, 0], said)
                     self.assertTrue(posted.startswith("**FAIL**"), posted)
 
+    def test_every_template_works_on_the_next_commit_with_the_same_recordings(self) -> None:
+        """Recordings lie in the repository, labels are those of commits: what the daemon has of an earlier one is compared as it is."""
+        with Daemon() as daemon, tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
+            server = f"http://127.0.0.1:{daemon.port}"
+            for number, name in enumerate(("github-actions-server.yml", "gitlab-ci-server.yml", "Jenkinsfile-server")):
+                with self.subTest(name):
+                    repository, device = Path(folder) / name, f"imu-{number}"
+                    repository.mkdir()
+                    self.fill(repository / "old", 0.1, 1.0)
+                    self.fill(repository / "candidate", 0.1, 1.01)
+                    there = {"DRIFTLAB_SERVER": server, "DRIFTLAB_DEVICE": device}
+                    begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", device, "--baseline", *map(str, sorted((repository / "old").iterdir())),
+                                            "--baseline-label", "firmware=1.0", "--candidate", *map(str, sorted((repository / "candidate").iterdir())),
+                                            "--candidate-label", "firmware=aaaa0000"], cwd=repository, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+                    self.assertEqual(begun.returncode, 0, begun.stderr)
+                    first = json.loads((repository / "driftlab-report/regression.json").read_text())
+                    codes, posted, said = self.run_in(repository, name, "bbbb0000", **there)
+                    self.assertEqual(codes, [0, 0], said)
+                    self.assertTrue(posted.startswith("**PASS**"), posted)
+                    self.assertIn("candidate: the bytes of 3 files are stored already under firmware=aaaa0000 and are compared as they are.", said)
+                    again = json.loads((repository / "driftlab-report/regression.json").read_text())
+                    self.assertEqual((again["look"], again["units"], again["arms"]), (first["look"], first["units"], first["arms"]), "the same look")
+                    self.assertEqual(len(daemon.items(f"/v1/recordings?device={device}&labels=firmware=aaaa0000")), 3, "labels stay")
+                    # One more power-up: the arm goes by the new label, and by it again when nothing more comes.
+                    (repository / "candidate/3.csv").write_text(recording(9, 0.1, 1.01))
+                    for label, told in (("cccc0000", "3 of 4 files are stored already under firmware=aaaa0000"), ("dddd0000", "1 of 4 files are stored already under firmware=cccc0000")):
+                        codes, _, said = self.run_in(repository, name, label, **there)
+                        self.assertIn(codes[0], (0, 3), said)
+                        self.assertIn(told, said)
+                        grown = json.loads((repository / "driftlab-report/regression.json").read_text())
+                        self.assertEqual((grown["arms"]["candidate"]["label"], len(grown["arms"]["candidate"]["sessions"]), grown["look"]["number"]),
+                                         ("firmware=cccc0000", 4, 1))
+
+    def test_only_other_labels_are_compared_as_they_are(self) -> None:
+        with Daemon() as daemon, tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
+            repository = Path(folder)
+            self.fill(repository / "old", 0.1, 1.0)
+            self.fill(repository / "candidate", 0.1, 1.01)
+            files = {arm: [str(path) for path in sorted((repository / arm).iterdir())] for arm in ("old", "candidate")}
+
+            def run(*arguments: str) -> tuple[int, str]:
+                done = subprocess.run([PROGRAM, "ci", "--server", f"http://127.0.0.1:{daemon.port}", "--device", "imu-07", *arguments], cwd=repository,
+                                      capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+                return done.returncode, done.stderr
+            code, said = run("--baseline", *files["old"], "--baseline-label", "firmware=1.0", "--candidate", *files["candidate"], "--candidate-label", "firmware=aaaa")
+            self.assertEqual(code, 0, said)
+            code, said = run("--candidate", *files["candidate"], "--candidate-label", "firmware=bbbb", "--condition", "constant_rate:z:9:deg/s")
+            self.assertEqual(code, 2, "another condition is another recording")
+            self.assertIn("with other metadata; change those with PATCH", said)
+            code, said = run("--candidate", files["old"][0], *files["candidate"][1:], "--candidate-label", "firmware=cccc")
+            self.assertEqual(code, 2, said)
+            self.assertIn("is in both arms", said)
+
     def test_templates_are_ten_lines_at_most(self) -> None:
         names = sorted(path.name for path in DEPLOY.iterdir())
         self.assertEqual(len(names), 6, "each of the three with and without a server")

@@ -293,7 +293,7 @@ class Labels(DaemonTest):
         [column] = samples.noise(12000, 1, 61)
         again = dict(device="relabelled", rate_hz=20, columns=samples.GYRO_Z)
         self.expect(200, self.daemon.upload(samples.csv([column], ["gz"]), **again))
-        self.problem(409, "conflict", self.daemon.upload(samples.csv([column], ["gz"]), labels="firmware=2", **again), recording_id=recording)
+        self.problem(409, "conflict", self.daemon.upload(samples.csv([column], ["gz"]), labels="firmware=2", **again), recording_id=recording, differs="labels")
 
 
 if __name__ == "__main__":

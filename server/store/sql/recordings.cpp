@@ -182,11 +182,13 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
   if (!existing->empty()) {
     Recording& same = existing->front();
     const bool other_tags = recording.tags_json != "{}" && same.tags_json != recording.tags_json;
-    if (same.metadata_json != recording.metadata_json || same.condition != recording.condition || other_tags) {
+    const bool other_metadata = same.metadata_json != recording.metadata_json || same.condition != recording.condition;
+    if (other_metadata || other_tags) {
+      const char* const differs = other_metadata ? "metadata" : "labels";
       return fail(ErrorCode::Conflict,
-                  "The device has these bytes already, as recording " + same.id +
-                      " with other metadata; change that one instead.",
-                  {{"recording_id", same.id}});
+                  "The device has these bytes already, as recording " + same.id + " with other " + differs +
+                      "; change that one instead.",
+                  {{"recording_id", same.id}, {"differs", differs}});
     }
     return RecordingOutcome{std::move(same), false};
   }
