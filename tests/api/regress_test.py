@@ -467,6 +467,22 @@ class Templates(unittest.TestCase):
             self.assertEqual(code, 2, said)
             self.assertIn("is in both arms", said)
 
+    def test_an_undecided_run_is_no_failure(self) -> None:
+        for name in ("github-actions.yml", "gitlab-ci.yml", "Jenkinsfile"):
+            with self.subTest(name), tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
+                repository = Path(folder)
+                for arm in ("baseline", "candidate"):
+                    (repository / arm).mkdir()
+                    (repository / arm / "0.csv").write_text(recording(1, 0.1, 1.0 if arm == "baseline" else 1.01))
+                codes, posted, said = self.run_in(repository, name, "abcdef12")
+                self.assertEqual(codes, [0 if name.startswith("github") else 3, 0], said)
+                self.assertTrue(posted.startswith("**INCONCLUSIVE**"), posted)
+                self.assertIn("ndecided", (DEPLOY / name).read_text())
+
+    def test_github_hands_the_token_over(self) -> None:
+        environment = yaml.safe_load((DEPLOY / "github-actions-server.yml").read_text())["env"]
+        self.assertEqual(environment["DRIFTLAB_TOKEN"], "${{ secrets.DRIFTLAB_TOKEN }}")
+
     def test_templates_are_ten_lines_at_most(self) -> None:
         names = sorted(path.name for path in DEPLOY.iterdir())
         self.assertEqual(len(names), 6, "each of the three with and without a server")
