@@ -17,6 +17,9 @@ namespace driftlab::cli {
 /// Inconclusive is that of a regression run which decides nothing.
 enum class Exit : int { Success = 0, Negative = 1, BadInput = 2, Inconclusive = 3, ServerOrJob = 4, Interrupted = 130 };
 
+/// The sentence that a person reads of an error, with the place of the fault where it does not name it.
+[[nodiscard]] std::string sentence_of(const Error& error);
+
 /// Prints one sentence on standard error and says how the process ends.
 [[nodiscard]] Exit complain(const Error& error);
 [[nodiscard]] Exit complain(const Error& error, Exit exit);

@@ -31,8 +31,8 @@ std::string with_flags(const Error& error) {
 
 }  // namespace
 
-Exit complain(const Error& error, Exit exit) {
-  std::string text = "driftlab: " + with_flags(error);
+std::string sentence_of(const Error& error) {
+  std::string text = with_flags(error);
   std::string where;
   for (const ErrorField& field : error.fields) {
     if (field.name.size() > 1 && field.name.starts_with('/') && where.empty()) {
@@ -46,7 +46,11 @@ Exit complain(const Error& error, Exit exit) {
   if (!where.empty()) {
     text += " (" + where + ")";
   }
-  std::fprintf(stderr, "%s\n", text.c_str());
+  return text;
+}
+
+Exit complain(const Error& error, Exit exit) {
+  std::fprintf(stderr, "driftlab: %s\n", sentence_of(error).c_str());
   return exit;
 }
 

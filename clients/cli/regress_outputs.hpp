@@ -19,7 +19,15 @@ struct RunForms {
   std::function<Result<std::string>()> badge;
 };
 
+/// Removes what an earlier run left under the names that a run with these flags writes, so that nothing publishes it as
+/// this one's. Error: Io.
+[[nodiscard]] Status remove_outputs(const RegressFlags& flags);
+
+/// A run that ended without a verdict: of its files only a summary and a test report, which say why.
+void write_no_verdict(const RegressFlags& flags, const std::string& sentence);
+
 /// Writes the files, prints the text or the document, and says how the process ends.
-[[nodiscard]] Exit finish_run(const RegressFlags& flags, const RunForms& forms, Inconclusive inconclusive);
+[[nodiscard]] tl::expected<Exit, Failure> finish_run(const RegressFlags& flags, const RunForms& forms,
+                                                     Inconclusive inconclusive);
 
 }  // namespace driftlab::cli

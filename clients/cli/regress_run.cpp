@@ -165,15 +165,20 @@ RunForms forms_of(const RegressReport& report, Inconclusive inconclusive) {
   return forms;
 }
 
-Exit accept(const RegressFlags& flags) {
+/// What ends the work of this process: the user's input, or an interrupt.
+tl::unexpected<Failure> unable_to_work(const Error& error) {
+  return unable(error, error.code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput);
+}
+
+tl::expected<Exit, Failure> accept(const RegressFlags& flags) {
   if (flags.state.empty() || flags.reason.empty()) {
-    return complain({ErrorCode::InvalidArgument,
-                     "--accept moves the anchor: it needs --reason TEXT, and --state FILE or --server URL.",
-                     {}});
+    return unable({ErrorCode::InvalidArgument,
+                   "--accept moves the anchor: it needs --reason TEXT, and --state FILE or --server URL.",
+                   {}});
   }
   auto state = RegressState::open(flags.state);
   if (!state) {
-    return complain(state.error());
+    return unable(state.error());
   }
   if (!state->has(flags.accept)) {
     std::string known;
@@ -181,22 +186,58 @@ Exit accept(const RegressFlags& flags) {
     for (const std::string& label : history.labels()) {
       known += (known.empty() ? "" : ", ") + label;
     }
-    return complain({ErrorCode::NotFound,
-                     "No recording has the label " + flags.accept +
-                         "; labels of this state: " + (known.empty() ? "none" : known) + ".",
-                     {}});
+    return unable({ErrorCode::NotFound,
+                   "No recording has the label " + flags.accept +
+                       "; labels of this state: " + (known.empty() ? "none" : known) + ".",
+                   {}});
   }
   WrittenRegression run;
   run.settings = state->kept_settings().value_or(run.settings);
   if (auto read = read_settings(flags, run); !read) {
-    return complain(read.error());
+    return unable(read.error());
   }
   state->set_anchor(flags.accept, flags.reason, run.settings);
   if (auto saved = state->save(); !saved) {
-    return complain(saved.error());
+    return unable(saved.error());
   }
   std::printf("The baseline is %s from now on: %s\n", flags.accept.c_str(), flags.reason.c_str());
   return Exit::Success;
+}
+
+tl::expected<Exit, Failure> regress_here(const RegressFlags& flags) {
+  if (!flags.accept.empty()) {
+    return accept(flags);
+  }
+  auto run = written_run(flags);
+  if (!run) {
+    return unable(run.error());
+  }
+  if (run->candidate.recordings.empty()) {
+    return unable(
+        {ErrorCode::InvalidArgument, "A run needs a candidate: --candidate FILE... or a run.json that names one.", {}});
+  }
+  auto state = RegressState::open(flags.state);
+  if (!state) {
+    return unable(state.error());
+  }
+  ResultReader reader(flags.models, flags.file, run->device, state->kept());
+  auto prepared = prepare(*run, *state, reader);
+  if (!prepared) {
+    return unable_to_work(prepared.error());
+  }
+  const auto report = regress(prepared->request, {interrupt_token(), {}});
+  if (!report) {
+    return unable_to_work(report.error());
+  }
+  if (prepared->request.look.counted) {
+    state->add_run(run->candidate.label, prepared->candidate, *report);
+  }
+  if (state->kept()) {
+    if (auto saved = state->save(); !saved) {
+      return unable(saved.error());
+    }
+  }
+  return finish_run(flags, forms_of(*report, run->inconclusive), run->inconclusive);
 }
 
 }  // namespace
@@ -236,42 +277,19 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
 }
 
 Exit run_regress(const RegressFlags& flags) {
-  if (!flags.server.empty()) {
-    return regress_there(flags);
+  const bool compares = flags.accept.empty();  // else the anchor moves, and no file is written
+  if (const Status removed = compares ? remove_outputs(flags) : Status{}; !removed) {
+    return complain(removed.error());
   }
-  if (!flags.accept.empty()) {
-    return accept(flags);
+  const auto ended = flags.server.empty() ? regress_here(flags) : regress_there(flags);
+  if (ended) {
+    return *ended;
   }
-  auto run = written_run(flags);
-  if (!run) {
-    return complain(run.error());
+  const Failure& failure = ended.error();
+  if (compares && failure.exit != Exit::Interrupted) {
+    write_no_verdict(flags, sentence_of(failure.error));
   }
-  if (run->candidate.recordings.empty()) {
-    return complain(
-        {ErrorCode::InvalidArgument, "A run needs a candidate: --candidate FILE... or a run.json that names one.", {}});
-  }
-  auto state = RegressState::open(flags.state);
-  if (!state) {
-    return complain(state.error());
-  }
-  ResultReader reader(flags.models, flags.file, run->device, state->kept());
-  auto prepared = prepare(*run, *state, reader);
-  if (!prepared) {
-    return complain_of_work(prepared.error());
-  }
-  const auto report = regress(prepared->request, {interrupt_token(), {}});
-  if (!report) {
-    return complain_of_work(report.error());
-  }
-  if (prepared->request.look.counted) {
-    state->add_run(run->candidate.label, prepared->candidate, *report);
-  }
-  if (state->kept()) {
-    if (auto saved = state->save(); !saved) {
-      return complain(saved.error());
-    }
-  }
-  return finish_run(flags, forms_of(*report, run->inconclusive), run->inconclusive);
+  return complain(failure.error, failure.exit);
 }
 
 }  // namespace driftlab::cli

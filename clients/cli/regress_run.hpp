@@ -2,10 +2,12 @@
 /// A regression run from the command line: its flags, and the run itself, for `driftlab regress` and `driftlab ci`.
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
+#include "clients/cli/remote_job.hpp"
 #include "core/analysis/regress.hpp"
 #include "schema/json/regression.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace driftlab::cli {
@@ -33,11 +35,17 @@ struct RegressFlags {
 /// Adds the flags that both commands have.
 void add_regress_flags(CLI::App& command, RegressFlags& flags);
 
-/// The same through a daemon: files are uploaded with their labels and sessions, characterised and compared there.
-[[nodiscard]] Exit regress_there(const RegressFlags& flags);
+/// A run that ends without a verdict, for bad input unless `exit` says otherwise.
+[[nodiscard]] inline tl::unexpected<Failure> unable(Error error, Exit exit = Exit::BadInput) {
+  return tl::unexpected(Failure{std::move(error), exit});
+}
+
+/// A run through a daemon: files are uploaded with their labels and sessions, characterised and compared there.
+[[nodiscard]] tl::expected<Exit, Failure> regress_there(const RegressFlags& flags);
 
 /// Runs, writes the files, prints the text or the document, and says how the process ends: 0 pass, 1 fail, 3
-/// inconclusive.
+/// inconclusive. A run that ends otherwise leaves no verdict of an earlier one, and says why in summary and test
+/// report.
 [[nodiscard]] Exit run_regress(const RegressFlags& flags);
 
 }  // namespace driftlab::cli

@@ -251,13 +251,13 @@ class StoredRun {
 };
 
 /// Makes a label the anchor of its device.
-Exit accept_there(HttpClient& client, const RegressFlags& flags) {
+tl::expected<Exit, Failure> accept_there(HttpClient& client, const RegressFlags& flags) {
   if (flags.reason.empty() || flags.file.device.empty()) {
-    return complain({ErrorCode::InvalidArgument, "--accept with --server needs --device NAME and --reason TEXT.", {}});
+    return unable({ErrorCode::InvalidArgument, "--accept with --server needs --device NAME and --reason TEXT.", {}});
   }
   WrittenRegression run;
   if (auto read = read_settings(flags, run); !read) {
-    return complain(read.error());
+    return unable(read.error());
   }
   Json anchor{{"device", flags.file.device}, {"label", flags.accept}, {"reason", flags.reason}};
   const Json all = to_json(run.settings, run.looks);
@@ -268,7 +268,7 @@ Exit accept_there(HttpClient& client, const RegressFlags& flags) {
   }
   const auto moved = post_for_id(client, "/v1/regression-anchors", anchor, "an anchor");
   if (!moved) {
-    return complain(moved.error().error, moved.error().exit);
+    return tl::unexpected(moved.error());
   }
   std::printf("The baseline is %s from now on: %s\n", flags.accept.c_str(), flags.reason.c_str());
   return Exit::Success;
@@ -276,47 +276,47 @@ Exit accept_there(HttpClient& client, const RegressFlags& flags) {
 
 }  // namespace
 
-Exit regress_there(const RegressFlags& flags) {
+tl::expected<Exit, Failure> regress_there(const RegressFlags& flags) {
   if (!flags.state.empty()) {
-    return complain({ErrorCode::InvalidArgument, "The daemon keeps anchor, looks and history: leave --state out.", {}});
+    return unable({ErrorCode::InvalidArgument, "The daemon keeps anchor, looks and history: leave --state out.", {}});
   }
   auto client = HttpClient::to(flags.server);
   if (!client) {
-    return complain(client.error());
+    return unable(client.error());
   }
   if (!flags.accept.empty()) {
     return accept_there(*client, flags);
   }
   auto run = written_run(flags);
   if (!run) {
-    return complain(run.error());
+    return unable(run.error());
   }
   if (flags.run.empty() && flags.file.device.empty()) {
-    return complain(
+    return unable(
         {ErrorCode::InvalidArgument, "Name the device whose recordings the daemon keeps: --device NAME.", {}});
   }
   if (!flags.baseline_label.empty()) {
     run->baseline.special.clear();  // the daemon knows which recordings have it
   }
   if (run->candidate.recordings.empty() && run->candidate.label.empty()) {
-    return complain({ErrorCode::InvalidArgument,
-                     "A run needs a candidate: --candidate FILE..., --candidate-label, or a run.json that names one.",
-                     {}});
+    return unable({ErrorCode::InvalidArgument,
+                   "A run needs a candidate: --candidate FILE..., --candidate-label, or a run.json that names one.",
+                   {}});
   }
   const auto request = request_of(*client, *run, flags);
   if (!request) {
-    return complain(request.error().error, request.error().exit);
+    return tl::unexpected(request.error());
   }
   ProgressBar bar;
   const auto job = succeeded_job(*client, *request, bar, kAnalysis);
   if (!job) {
-    return complain(job.error().error, job.error().exit);
+    return tl::unexpected(job.error());
   }
   StoredRun stored(*client, *job);
   const auto body = stored.get("", "application/json");
   const auto document = body ? parse_json(*body) : fail(body.error());
   if (!document) {
-    return complain(document.error(), Exit::ServerOrJob);
+    return unable(document.error(), Exit::ServerOrJob);
   }
   const std::string verdict = document->value("verdict", "");
   RunForms forms;

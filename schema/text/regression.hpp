@@ -20,6 +20,11 @@ namespace driftlab {
 /// gated tests are errors of type `inconclusive`, or skipped with `skip_open`; watched tests stand in system-out.
 [[nodiscard]] std::string regression_to_junit(const RegressReport& run, bool skip_open);
 
+/// The page and the test report of a run that ended without a verdict, for what the sentence says: as those of a run,
+/// the first line and the marker, and the case `verdict` with an error.
+[[nodiscard]] std::string no_verdict_to_markdown(const std::string& sentence);
+[[nodiscard]] std::string no_verdict_to_junit(const std::string& sentence);
+
 /// SVG, 20 px high: `sensor noise | no worse, 10 % to 20 s`.
 [[nodiscard]] std::string regression_to_badge(const RegressReport& run);
 

@@ -63,6 +63,10 @@ class TestSuite {
     ++counts.failures;
     add(name, "<failure message=\"" + xml_text(sentence) + "\"/>");
   }
+  void broken(const std::string& name, const std::string& sentence) {
+    ++counts.errors;
+    add(name, "<error type=\"no verdict\" message=\"" + xml_text(sentence) + "\"/>");
+  }
   void open(const std::string& name, const std::string& sentence) {
     if (skip_open_) {
       ++counts.skipped;
@@ -158,7 +162,24 @@ std::string numbers_of(const CaseCounts& counts) {
          "\" errors=\"" + std::to_string(counts.errors) + "\" skipped=\"" + std::to_string(counts.skipped) + "\"";
 }
 
+std::string suite_text(const std::string& name, const TestSuite& suite) {
+  return "  <testsuite name=\"" + xml_text(name) + "\"" + numbers_of(suite.counts) + ">\n" + suite.cases +
+         "    <system-out>" + xml_text(suite.output) + "</system-out>\n  </testsuite>\n";
+}
+
+std::string junit_of(const CaseCounts& counts, const std::string& suites) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + numbers_of(counts) + ">\n" + suites +
+         "</testsuites>\n";
+}
+
 }  // namespace
+
+std::string no_verdict_to_junit(const std::string& sentence) {
+  TestSuite suite("driftlab.regression", false);
+  suite.broken("verdict", sentence);
+  suite.output = sentence + "\n";
+  return junit_of(suite.counts, suite_text("sensor noise", suite));
+}
 
 std::string regression_to_junit(const RegressReport& run, bool skip_open) {
   const regression::Report& report = run.report;
@@ -172,9 +193,8 @@ std::string regression_to_junit(const RegressReport& run, bool skip_open) {
   std::string suites;
   const auto close = [&](const std::string& condition, const TestSuite& suite) {
     all += suite.counts;
-    const std::string name = "sensor noise of " + report.device + (condition.empty() ? "" : ", " + condition) + pair;
-    suites += "  <testsuite name=\"" + xml_text(name) + "\"" + numbers_of(suite.counts) + ">\n" + suite.cases +
-              "    <system-out>" + xml_text(suite.output) + "</system-out>\n  </testsuite>\n";
+    suites +=
+        suite_text("sensor noise of " + report.device + (condition.empty() ? "" : ", " + condition) + pair, suite);
   };
   for (const std::string& condition : conditions) {
     TestSuite suite("driftlab.regression." + report.device, skip_open);
@@ -189,8 +209,7 @@ std::string regression_to_junit(const RegressReport& run, bool skip_open) {
     add_run(report, suite);
     close("", suite);
   }
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + numbers_of(all) + ">\n" + suites +
-         "</testsuites>\n";
+  return junit_of(all, suites);
 }
 
 }  // namespace driftlab

@@ -78,6 +78,8 @@ std::string exclusions_text(const std::vector<regression::Exclusion>& excluded) 
   return text;
 }
 
+/// By which a bot finds its comment again.
+const char* const kMarker = "<!-- driftlab-regression -->\n\n";
 const char* const kWorstHead = "| axis | at | change | finding |\n|---|---|---|---|\n";
 
 }  // namespace
@@ -111,7 +113,7 @@ std::string regression_to_text(const RegressReport& run) {
 std::string regression_to_markdown(const RegressReport& run, const std::string& figure) {
   const regression::Report& report = run.report;
   std::string page = "**" + head_word(report.verdict) + "**: " + markdown_field(report.summary.verdict) + "\n";
-  page += "<!-- driftlab-regression -->\n\n";
+  page += kMarker;
   const std::vector<std::string>& details = report.summary.details;
   for (std::size_t i = 0; i < std::min(kMostDetails, details.size()); ++i) {
     page += "- " + markdown_field(details[i]) + "\n";
@@ -147,6 +149,10 @@ std::string regression_to_markdown(const RegressReport& run, const std::string& 
   }
   page += "\n</details>\n";
   return page;
+}
+
+std::string no_verdict_to_markdown(const std::string& sentence) {
+  return "**ERROR**: " + markdown_field(sentence) + "\n" + kMarker + "The run ended without a verdict.\n";
 }
 
 }  // namespace driftlab

@@ -321,6 +321,42 @@ class Regress(unittest.TestCase):
         self.assertIn("svg", ElementTree.parse(report / "ratio.svg").getroot().tag)
 
 
+    def test_a_run_without_a_verdict_leaves_none_of_an_earlier_one(self) -> None:
+        """What a pipeline publishes must be of its run: an error of the input, of the daemon, of the words on the line."""
+        folder = self.folder / "stale"
+        folder.mkdir()
+        report = folder / "driftlab-report"
+        absent = ("--server", "http://127.0.0.1:1", "--device", "imu-07")
+        for code, words, *arguments in ((2, "empty.csv", "--baseline", "b.csv", "--candidate", "c.csv", "empty.csv"), (2, "--state", *absent, "--state", "s.json"),
+                                                            (4, "cannot be reached", *absent, "--candidate", "c.csv", "--candidate-label", "a=<b>")):
+            with self.subTest(words):
+                for name, arm in (("b.csv", "baseline"), ("c.csv", "candidate")):
+                    (folder / name).write_text((self.folder / arm / "0.csv").read_text())
+                (folder / "empty.csv").write_text("t [s],gz [deg/s]\n")
+                begun = self.driftlab("ci", "--baseline", "b.csv", "--candidate", "c.csv", "--inconclusive", "pass", "--models", "WN", cwd=folder)
+                self.assertEqual(begun.returncode, 0, begun.stderr)
+                (report / "mine.txt").write_text("kept")
+                done = self.driftlab("ci", *arguments, cwd=folder)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn(words, done.stderr)
+                self.assertEqual(sorted(path.name for path in report.iterdir()), ["junit.xml", "mine.txt", "summary.md"], "not another's file")
+                summary = (report / "summary.md").read_text().splitlines()
+                self.assertTrue(summary[0].startswith("**ERROR**: "), summary)
+                self.assertIn(words, summary[0])
+                self.assertEqual(summary[1], "<!-- driftlab-regression -->")
+                suites = ElementTree.parse(report / "junit.xml").getroot()
+                self.assertEqual([suites.get(count) for count in ("tests", "errors", "failures")], ["1", "1", "0"])
+                [error] = suites.iter("error")
+                self.assertEqual("driftlab: " + error.get("message", ""), done.stderr.strip().splitlines()[-1])
+        pages = {name: self.folder / f"stale_{name}" for name in ("markdown", "junit", "badge")}
+        for page in pages.values():
+            page.write_text("PASS")
+        self.regress(2, "--baseline", "absent.csv", "--candidate", "candidate/0.csv", *(word for name, page in pages.items() for word in (f"--{name}", str(page))))
+        self.assertTrue(pages["markdown"].read_text().startswith("**ERROR**: "))
+        self.assertIn("absent.csv", pages["junit"].read_text())
+        self.assertFalse(pages["badge"].exists())
+
+
 class Notes(BaseHTTPRequestHandler):
     """Where a template posts the note of a merge request."""
     posted: ClassVar[list[tuple[str, str, str]]] = []
