@@ -6,6 +6,8 @@
 #include "schema/json/calibration.hpp"
 #include "schema/json/recording_spec.hpp"
 
+#include <utility>
+
 namespace driftlab::cli {
 namespace {
 
@@ -110,6 +112,21 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
   return inputs;
 }
 
+/// The flags that describe bare recordings, those of them that are given.
+std::string recording_flags(const FileFlags& flags) {
+  std::string given;
+  for (const auto& [name, is_given] : {std::pair{"--rate-hz", !flags.rate_hz.empty()},
+                                       {"--columns", !flags.columns.empty()},
+                                       {"--stream", !flags.stream.empty()},
+                                       {"--condition", flags.condition != FileFlags{}.condition},
+                                       {"--calibration", !flags.calibration.empty()},
+                                       {"--skip-lines", flags.skip_lines > 0},
+                                       {"--comment", !flags.comment.empty()}}) {
+    given += is_given ? (given.empty() ? "" : ", ") + std::string(name) : "";
+  }
+  return given;
+}
+
 }  // namespace
 
 Result<Inputs> described_file(const std::filesystem::path& path, const RecordingSpec& spec, const FileFlags& flags) {
@@ -126,8 +143,9 @@ Result<Inputs> described_file(const std::filesystem::path& path, const Recording
 
 Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags) {
   if (names.size() == 1 && names.front().ends_with(".json")) {
-    if (flags.skip_lines > 0 || !flags.comment.empty()) {
-      return fail(ErrorCode::InvalidArgument, "--skip-lines and --comment are for recordings, not for a study.");
+    if (const std::string given = recording_flags(flags); !given.empty()) {
+      return fail(ErrorCode::InvalidArgument,
+                  "A study says of each recording what it is: " + given + " cannot stand beside it.");
     }
     auto study = read_study(names.front());
     if (study && !flags.device.empty()) {

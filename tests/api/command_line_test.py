@@ -268,6 +268,15 @@ class CommandLine(DaemonTest):
         self.refused(4, "outages", "--runs", "2", "--server", "http://127.0.0.1:1")
         self.assertEqual(self.driftlab("no-such-command").returncode, 2)
 
+    def test_flags_that_describe_recordings_are_refused_beside_a_study(self) -> None:
+        """They changed nothing there, and nothing was said."""
+        (self.folder / "beside.json").write_text(json.dumps({"device": {"id": "imu-07"}, "recordings": [{"file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}}]}))
+        self.said("characterise", "beside.json", "--device", "imu-08", "--models", "WN")
+        for flag, value in (("--rate-hz", "50"), ("--columns", "gz=angular_rate:z:deg/s"), ("--stream", "imu2"), ("--condition", "constant_rate:z:9:deg/s"),
+                            ("--calibration", "half.json"), ("--skip-lines", "2"), ("--comment", ";")):
+            with self.subTest(flag):
+                self.assertIn(f"{flag} cannot stand beside it", self.refused(2, "characterise", "beside.json", flag, value))
+
 
 class BehindALongJob(DaemonTest):
     """One worker, which a long evaluation keeps from pooling what commands ask for."""
