@@ -270,9 +270,11 @@ class CommandLine(DaemonTest):
 
     def test_flags_that_describe_recordings_are_refused_beside_a_study(self) -> None:
         """They changed nothing there, and nothing was said."""
-        (self.folder / "beside.json").write_text(json.dumps({"device": {"id": "imu-07"}, "recordings": [{"file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}}]}))
+        still = {"file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}}
+        (self.folder / "beside.json").write_text(json.dumps({"device": {"id": "imu-07"}, "recordings": [still]}))
         self.said("characterise", "beside.json", "--device", "imu-08", "--models", "WN")
-        for flag, value in (("--rate-hz", "50"), ("--columns", "gz=angular_rate:z:deg/s"), ("--stream", "imu2"), ("--condition", "constant_rate:z:9:deg/s"),
+        for flag, value in (("--rate-hz", "50"), ("--columns", "gz=angular_rate:z:deg/s"), ("--stream", "imu2"),
+                            ("--condition", "constant_rate:z:9:deg/s"),
                             ("--calibration", "half.json"), ("--skip-lines", "2"), ("--comment", ";")):
             with self.subTest(flag):
                 self.assertIn(f"{flag} cannot stand beside it", self.refused(2, "characterise", "beside.json", flag, value))

@@ -320,15 +320,15 @@ class Regress(unittest.TestCase):
         self.assertIn("worse: gyro z +", "".join(badge.itertext()))
         self.assertIn("svg", ElementTree.parse(report / "ratio.svg").getroot().tag)
 
-
     def test_a_run_without_a_verdict_leaves_none_of_an_earlier_one(self) -> None:
         """What a pipeline publishes must be of its run: an error of the input, of the daemon, of the words on the line."""
         folder = self.folder / "stale"
         folder.mkdir()
         report = folder / "driftlab-report"
         absent = ("--server", "http://127.0.0.1:1", "--device", "imu-07")
-        for code, words, *arguments in ((2, "empty.csv", "--baseline", "b.csv", "--candidate", "c.csv", "empty.csv"), (2, "--state", *absent, "--state", "s.json"),
-                                                            (4, "cannot be reached", *absent, "--candidate", "c.csv", "--candidate-label", "a=<b>")):
+        for code, words, *arguments in ((2, "empty.csv", "--baseline", "b.csv", "--candidate", "c.csv", "empty.csv"),
+                                        (2, "--state", *absent, "--state", "s.json"),
+                                        (4, "cannot be reached", *absent, "--candidate", "c.csv", "--candidate-label", "a=<b>")):
             with self.subTest(words):
                 for name, arm in (("b.csv", "baseline"), ("c.csv", "candidate")):
                     (folder / name).write_text((self.folder / arm / "0.csv").read_text())
@@ -351,7 +351,8 @@ class Regress(unittest.TestCase):
         pages = {name: self.folder / f"stale_{name}" for name in ("markdown", "junit", "badge")}
         for page in pages.values():
             page.write_text("PASS")
-        self.regress(2, "--baseline", "absent.csv", "--candidate", "candidate/0.csv", *(word for name, page in pages.items() for word in (f"--{name}", str(page))))
+        named = [word for name, page in pages.items() for word in (f"--{name}", str(page))]
+        self.regress(2, "--baseline", "absent.csv", "--candidate", "candidate/0.csv", *named)
         self.assertTrue(pages["markdown"].read_text().startswith("**ERROR**: "))
         self.assertIn("absent.csv", pages["junit"].read_text())
         self.assertFalse(pages["badge"].exists())
@@ -461,9 +462,10 @@ class Templates(unittest.TestCase):
                     self.fill(repository / "old", 0.1, 1.0)
                     self.fill(repository / "candidate", 0.1, 1.01)
                     there = {"DRIFTLAB_SERVER": server, "DRIFTLAB_DEVICE": device}
-                    begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", device, "--baseline", *map(str, sorted((repository / "old").iterdir())),
-                                            "--baseline-label", "firmware=1.0", "--candidate", *map(str, sorted((repository / "candidate").iterdir())),
-                                            "--candidate-label", "firmware=aaaa0000"], cwd=repository, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+                    old, new = ([str(path) for path in sorted((repository / arm).iterdir())] for arm in ("old", "candidate"))
+                    begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", device, "--baseline", *old, "--baseline-label", "firmware=1.0",
+                                            "--candidate", *new, "--candidate-label", "firmware=aaaa0000"],
+                                           cwd=repository, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
                     self.assertEqual(begun.returncode, 0, begun.stderr)
                     first = json.loads((repository / "driftlab-report/regression.json").read_text())
                     codes, posted, said = self.run_in(repository, name, "bbbb0000", **there)
@@ -475,7 +477,8 @@ class Templates(unittest.TestCase):
                     self.assertEqual(len(daemon.items(f"/v1/recordings?device={device}&labels=firmware=aaaa0000")), 3, "labels stay")
                     # One more power-up: the arm goes by the new label, and by it again when nothing more comes.
                     (repository / "candidate/3.csv").write_text(recording(9, 0.1, 1.01))
-                    for label, told in (("cccc0000", "3 of 4 files are stored already under firmware=aaaa0000"), ("dddd0000", "1 of 4 files are stored already under firmware=cccc0000")):
+                    for label, told in (("cccc0000", "3 of 4 files are stored already under firmware=aaaa0000"),
+                                        ("dddd0000", "1 of 4 files are stored already under firmware=cccc0000")):
                         codes, _, said = self.run_in(repository, name, label, **there)
                         self.assertIn(codes[0], (0, 3), said)
                         self.assertIn(told, said)
@@ -491,10 +494,12 @@ class Templates(unittest.TestCase):
             files = {arm: [str(path) for path in sorted((repository / arm).iterdir())] for arm in ("old", "candidate")}
 
             def run(*arguments: str) -> tuple[int, str]:
-                done = subprocess.run([PROGRAM, "ci", "--server", f"http://127.0.0.1:{daemon.port}", "--device", "imu-07", *arguments], cwd=repository,
+                server = ("--server", f"http://127.0.0.1:{daemon.port}", "--device", "imu-07")
+                done = subprocess.run([PROGRAM, "ci", *server, *arguments], cwd=repository,
                                       capture_output=True, text=True, timeout=PATIENCE_S, check=False)
                 return done.returncode, done.stderr
-            code, said = run("--baseline", *files["old"], "--baseline-label", "firmware=1.0", "--candidate", *files["candidate"], "--candidate-label", "firmware=aaaa")
+            code, said = run("--baseline", *files["old"], "--baseline-label", "firmware=1.0",
+                             "--candidate", *files["candidate"], "--candidate-label", "firmware=aaaa")
             self.assertEqual(code, 0, said)
             code, said = run("--candidate", *files["candidate"], "--candidate-label", "firmware=bbbb", "--condition", "constant_rate:z:9:deg/s")
             self.assertEqual(code, 2, "another condition is another recording")
