@@ -75,7 +75,7 @@ Result<AxisSimulation> axis_of(const SimulateFlags& flags) {
 
 /// An .npy file has no names: what reads it must be told them, and this says how.
 void say_columns(const SimulateFlags& flags, const SampleTable& table) {
-  if (!flags.out.ends_with(".npy")) {
+  if (!is_array_name(flags.out)) {
     return;
   }
   std::string columns;
@@ -173,7 +173,7 @@ void add_simulate(CLI::App& app, Command& chosen) {
   command->add_option("--rate-hz", flags->rate_hz, "Sampling rate")->check(CLI::Range(0.1, 1e5))->capture_default_str();
   command->add_option("--duration-s", flags->duration_s, "Length")->check(CLI::Range(1.0, 1e6))->capture_default_str();
   command->add_option("--seed", flags->seed, "Same seed, same recording")->capture_default_str();
-  command->add_option("--out", flags->out, "File to write: .npy, or else CSV")->required();
+  command->add_option("--out", flags->out, "File to write: .npy, or else CSV; .gz packs it")->required();
   command->add_option("--scenario", flags->scenario,
                       "Inertial unit along the drive of a scenario (see outages) in place of one axis");
   command->add_option("--run", flags->run, "Which Monte Carlo run of the scenario")->capture_default_str();

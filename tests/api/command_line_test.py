@@ -1,6 +1,7 @@
 """driftlab as a user runs it: every command in its process and through a daemon, the same result, sentences and exit codes."""
 from __future__ import annotations
 
+import gzip
 import json
 import math
 import os
@@ -252,6 +253,19 @@ class CommandLine(DaemonTest):
         self.assertIn("--rate-hz 100", made.stderr)
         self.assertIn("0 is gz [deg/s]", made.stderr)
         self.assertIn("gyroscope z", self.said("characterise", "rest.npy", "--rate-hz", "100", "--columns", "0=angular_rate:z:deg/s"))
+
+    def test_what_is_simulated_is_packed_as_its_name_says(self) -> None:
+        for name in ("plain.csv", "packed.csv.gz", "plain.npy", "packed.npy.gz"):
+            self.said("simulate", "--duration-s", "60", "--seed", "4", "--out", name)
+        for packed, plain in (("packed.csv.gz", "plain.csv"), ("packed.npy.gz", "plain.npy")):
+            self.assertEqual(gzip.decompress((self.folder / packed).read_bytes()), (self.folder / plain).read_bytes())
+        self.assertIn("gyroscope z", self.said("characterise", "packed.csv.gz"))
+        self.assertIn("gyroscope z", self.said("characterise", "packed.npy.gz", "--rate-hz", "100", "--columns", "0=angular_rate:z:deg/s"))
+        self.assertIn("as .gz alone", self.refused(2, "simulate", "--duration-s", "60", "--out", "packed.csv.xz"))
+        self.assertFalse((self.folder / "packed.csv.xz").exists())
+        self.assertIn("cannot be written", self.refused(2, "simulate", "--duration-s", "60", "--out", "absent/rest.csv.gz"))
+        if Path("/dev/full").exists():
+            self.assertIn("cannot be written", self.refused(2, "simulate", "--duration-s", "60", "--out", "/dev/full"))
 
     def test_a_first_column_of_time_may_be_named_with_its_unit_at_once(self) -> None:
         rows = "\n".join(f"{i / 100:.2f}\t{(i * 7919) % 101 / 100:.2f}" for i in range(3000))
