@@ -463,8 +463,8 @@ class Templates(unittest.TestCase):
                     self.fill(repository / "candidate", 0.1, 1.01)
                     there = {"DRIFTLAB_SERVER": server, "DRIFTLAB_DEVICE": device}
                     old, new = ([str(path) for path in sorted((repository / arm).iterdir())] for arm in ("old", "candidate"))
-                    begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", device, "--baseline", *old, "--baseline-label", "firmware=1.0",
-                                            "--candidate", *new, "--candidate-label", "firmware=aaaa0000"],
+                    begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", device, "--baseline", *old,
+                                            "--baseline-label", "firmware=1.0", "--candidate", *new, "--candidate-label", "firmware=aaaa0000"],
                                            cwd=repository, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
                     self.assertEqual(begun.returncode, 0, begun.stderr)
                     first = json.loads((repository / "driftlab-report/regression.json").read_text())
