@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 namespace driftlab::server {
@@ -151,10 +152,10 @@ class PinnedArms {
 
 /// In order, for one text whatever the order of the recordings.
 std::vector<std::string> ids_in_both(const Json& one, const Json& other) {
-  std::vector<std::string> left = regressed_ids(one);
-  std::vector<std::string> right = regressed_ids(other);
-  std::sort(left.begin(), left.end());
-  std::sort(right.begin(), right.end());
+  const std::vector<std::string> first = regressed_ids(one);
+  const std::vector<std::string> second = regressed_ids(other);
+  const std::set<std::string> left(first.begin(), first.end());
+  const std::set<std::string> right(second.begin(), second.end());
   std::vector<std::string> both;
   std::set_intersection(left.begin(), left.end(), right.begin(), right.end(), std::back_inserter(both));
   return both;
