@@ -84,9 +84,11 @@ class ArmSender {
       say_kept(kept_, name, arm.recordings.size());
       label_says_all = false;
       if (!labels->empty() && kept_.size() == arm.recordings.size()) {
-        *labels = std::max_element(kept_.begin(), kept_.end(), [](const KeptRecording& a, const KeptRecording& b) {
-                    return a.id < b.id;  // ids begin with the time
-                  })->labels;
+        const KeptRecording* newest = &kept_.front();
+        for (const KeptRecording& one : kept_) {
+          newest = one.id > newest->id ? &one : newest;  // ids begin with the time
+        }
+        *labels = newest->labels;
       }
     }
     if (!labels->empty()) {
