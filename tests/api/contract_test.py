@@ -251,7 +251,8 @@ class Operations(DaemonTest):
                 answer = self.expect(200, daemon.get(target))
                 if "etag" in answer.headers:
                     self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))
-        for target in (f"/v1/investigations/{investigation}", study.headers["location"], calibration.headers["location"], model.headers["location"]):
+        for target in (f"/v1/investigations/{investigation}", study.headers["location"], calibration.headers["location"], model.headers["location"],
+                       drive.headers["location"]):
             self.expect(204, daemon.request("DELETE", target))
         spare = daemon.post("/v1/devices", {"name": "spare"}).headers["location"]
         self.expect(204, daemon.request("DELETE", spare, headers={"If-Match": "*"}))

@@ -316,6 +316,9 @@ class Everything(ClientTest):
         measured = client.drive_evaluation(driven["id"])["evaluation"]
         assert measured is not None
         self.assertIn("After 10 s", measured["summary"])
+        client.delete_drive(drive["id"])
+        with self.assertRaises(NotFound):
+            client.drive(drive["id"])
 
         made = client.create_calibration("all-07", calibration={"gyroscope": {"apply": {
             "reading_unit": "rad/s", "bias": [0.0] * 3, "correction": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]}}})
