@@ -56,9 +56,8 @@ struct Contrast {
   Eigen::MatrixXd common;
   Eigen::MatrixXd local;
   Eigen::MatrixXd combine;
-  /// w_rj^2 / sum_r w_rj^2 per test of a scale (rows) and session of the two arms (columns, in the order of the
-  /// design): how much of what sessions add to theta is each one's. Between five sessions and one, five sixths are that
-  /// one's.
+  /// w_rj^2 / sum_r w_rj^2 per test of a scale (rows) and session of the two arms (columns, by rising shares): how much
+  /// of what sessions add to theta is each one's. Between five sessions and one, five sixths are that one's.
   Eigen::MatrixXd shares;
 };
 
