@@ -4,6 +4,7 @@
 #include "core/signal/unit.hpp"
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -17,12 +18,6 @@ using figure::Plot;
 using figure::Series;
 
 namespace {
-
-/// A member that is a text; nothing where it is null, as the unit of a number without one is.
-std::string text_or_empty(const Json& object, const char* member) {
-  const Json found = object.value(member, Json(nullptr));
-  return found.is_string() ? found.get<std::string>() : "";
-}
 
 /// The dynamics that conditions of one kind differ by, in the unit of the first of them.
 struct Dynamics {
@@ -104,13 +99,13 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
       series.key = false;
       figure::Axis x = axis_of(dynamics, series);
       Plot plot{.x = std::move(x),
-                .y = figure::axis_from_zero(name + ", " + printed_unit(text_or_empty(column, "unit")), most),
+                .y = figure::axis_from_zero(name + ", " + printed_unit(text_member(column, "unit")), most),
                 .series = {std::move(series)}};
       std::string named = title;
       named.append(": ").append(name);
       Figure figure{.title = std::move(named),
                     .sentence = name + " under each condition with its 95 % interval, from zero.",
-                    .source = "driftlab " DRIFTLAB_VERSION ", " + text_or_empty(document, "model")};
+                    .source = "driftlab " DRIFTLAB_VERSION ", " + text_member(document, "model")};
       figure.plots.push_back(std::move(plot));
       figures.push_back({kinds.size() > 1 ? word(key + "-" + dynamics.kind) : word(key), std::move(figure)});
     }
