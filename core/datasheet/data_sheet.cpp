@@ -72,6 +72,70 @@ void find_all(const Folded& text, std::string_view spelling, const DataSheet* sh
 
 bool overlap(const Match& a, const Match& b) { return a.first < b.first + b.length && b.first < a.first + a.length; }
 
+/// The letters of a text without the words in which its maker is named: `Xsens MTi` is MTI beside a sheet of Xsens.
+std::string letters_beside(std::string_view text, std::string_view manufacturer) {
+  const Folded folded = fold(text);
+  const std::string maker = fold(manufacturer).letters;
+  std::string left;
+  for (std::size_t first = 0; first < folded.letters.size();) {
+    std::size_t end = first + 1;
+    while (!folded.begins[end]) {
+      ++end;
+    }
+    const std::string word = folded.letters.substr(first, end - first);
+    left += word.size() > 2 && maker.find(word) != std::string::npos ? "" : word;
+    first = end;
+  }
+  return left;
+}
+
+constexpr std::size_t kFewestLetters = 3;  ///< of which a longer name can be told: `MTi`
+
+/// The names, as their manufacturers write them, that begin with a text that is none of them.
+std::vector<std::string_view> names_that_begin_with(std::string_view text) {
+  std::vector<std::string_view> names;
+  for (const DataSheet* const sheet : data_sheets()) {
+    const std::string begun = letters_beside(text, sheet->manufacturer);
+    if (begun.size() < kFewestLetters) {
+      continue;
+    }
+    if (fold(sheet->name).letters.starts_with(begun)) {
+      names.push_back(sheet->name);
+      continue;
+    }
+    for (const std::string_view spelling : sheet->also) {
+      if (!spelling.ends_with('*') && fold(spelling).letters.starts_with(begun)) {
+        names.push_back(spelling);
+      }
+    }
+  }
+  return names;
+}
+
+std::string listed(const std::vector<std::string_view>& names) {
+  std::string text;
+  for (const std::string_view name : names) {
+    text.append(text.empty() ? "" : ", ").append(name);
+  }
+  return text;
+}
+
+std::string refusal(std::string_view name, const std::vector<const DataSheet*>& named) {
+  const std::string quoted = "'" + std::string(name) + "'";
+  std::vector<std::string_view> names;
+  for (const DataSheet* const sheet : named.empty() ? data_sheets() : named) {
+    names.push_back(sheet->name);
+  }
+  if (!named.empty()) {
+    return quoted + " names several sensors: " + listed(names) + ". Name one of them.";
+  }
+  if (const auto longer = names_that_begin_with(name); !longer.empty()) {
+    return quoted + " is not the whole name of a sensor. Known names that begin so: " + listed(longer) +
+           ". Write one of them whole.";
+  }
+  return "There is no data sheet of " + quoted + ". Known are " + listed(names) + ".";
+}
+
 double si(double value, std::string_view unit) {
   const auto known = parse_unit(unit);
   return known ? value * known->factor : value;
@@ -118,14 +182,7 @@ Result<const DataSheet*> find_data_sheet(std::string_view name) {
   if (named.size() == 1) {
     return named.front();
   }
-  std::string known;
-  for (const DataSheet* const sheet : named.empty() ? data_sheets() : named) {
-    known.append(known.empty() ? "" : ", ").append(sheet->name);
-  }
-  return fail(ErrorCode::NotFound,
-              named.empty() ? "There is no data sheet of '" + std::string(name) + "'. Known are " + known + "."
-                            : "'" + std::string(name) + "' names several sensors: " + known + ". Name one of them.",
-              {{"parameter", "model"}});
+  return fail(ErrorCode::NotFound, refusal(name, named), {{"parameter", "model"}});
 }
 
 std::optional<KnownSensor> known_sensor(std::span<const std::string> texts, Quantity quantity) {

@@ -69,7 +69,8 @@ struct DataSheet {
 /// must be another word, or behind it an order code of its manufacturer. The longer of two names at one place counts.
 [[nodiscard]] std::vector<const DataSheet*> sheets_named_in(std::string_view text);
 
-/// The sheet of that name. Error: NotFound, with what is known.
+/// The sheet of that name. Error: NotFound, with what is known: of a name that is cut short (`Xsens MTi`) the longer
+/// ones.
 [[nodiscard]] Result<const DataSheet*> find_data_sheet(std::string_view name);
 
 /// The sensor of a device, with its document.

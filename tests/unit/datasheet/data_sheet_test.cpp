@@ -51,5 +51,15 @@ TEST(FindDataSheet, SaysWhatIsKnownAndWhatIsAmbiguous) {
   EXPECT_NE(find_data_sheet("BMI160 BMI270").error().message.find("several"), std::string::npos);
 }
 
+TEST(FindDataSheet, NamesTheLongerOnesOfANameThatIsCutShort) {
+  const auto family = find_data_sheet("Xsens MTi");
+  ASSERT_FALSE(family);
+  EXPECT_NE(family.error().message.find("begin so: MTi-28A53G35, MTi 1-series,"), std::string::npos)
+      << family.error().message;
+  EXPECT_EQ(family.error().message.find("MPU-6050"), std::string::npos) << family.error().message;
+  EXPECT_NE(find_data_sheet("MTi-G").error().message.find("begin so: MTi-G-700, MTi-G-710."), std::string::npos);
+  EXPECT_NE(find_data_sheet("Bosch").error().message.find("There is no data sheet"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace driftlab
