@@ -2,6 +2,7 @@
 
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
+#include "clients/cli/left_out_lines.hpp"
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
 #include "schema/json/calibration.hpp"
@@ -58,6 +59,7 @@ void add_calibrate(CLI::App& app, Command& chosen) {
   command->add_option("--stream", flags->file.stream,
                       "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command->add_option("--condition", flags->file.condition, "Condition of a bare recording")->capture_default_str();
+  add_left_out_lines(*command, flags->file);
   command->add_option("--gravity", flags->options.gravity_m_s2, "Local gravity [m/s^2]")->capture_default_str();
   command->add_flag("--misalignment", flags->options.misalignment,
                     "Estimate the misalignment of the axes of known positions too; from rests it always is");

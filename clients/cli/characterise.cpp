@@ -1,4 +1,5 @@
 #include "clients/cli/analysis.hpp"
+#include "clients/cli/left_out_lines.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "schema/json/told_characterisation.hpp"
 #include "schema/text/characterisation.hpp"
@@ -127,8 +128,7 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--device", flags->file.device,
                       "Device the recordings belong to; default: the first file's name");
-  command->add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
-  command->add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
+  add_left_out_lines(*command, flags->file);
   command->add_option("--calibration", flags->file.calibration,
                       "Correct the readings by what `driftlab calibrate --json` wrote to this file");
   command

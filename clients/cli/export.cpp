@@ -2,6 +2,7 @@
 
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/http_client.hpp"
+#include "clients/cli/left_out_lines.hpp"
 #include "clients/cli/print_answer.hpp"
 #include "core/export/exportable_columns.hpp"
 #include "core/export/imu_noise.hpp"
@@ -173,8 +174,7 @@ void add_export(CLI::App& app, Command& chosen) {
   command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
       ->capture_default_str();
   command->add_option("--device", flags->file.device, "Name of the device; with --server the device to export");
-  command->add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
-  command->add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
+  add_left_out_lines(*command, flags->file);
   command->add_option("--calibration", flags->file.calibration,
                       "Correct the readings by what `driftlab calibrate --json` wrote to this file");
   command->add_option("--server", flags->server, "Export what the daemon at this address has stored of --device");

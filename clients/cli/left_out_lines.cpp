@@ -3,6 +3,8 @@
 #include "core/read/byte_source.hpp"
 #include "core/signal/with_count.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 #include <fstream>
 
@@ -51,6 +53,11 @@ Result<LeftOut> copy_without(const FileFlags& flags, const std::filesystem::path
 }
 
 }  // namespace
+
+void add_left_out_lines(CLI::App& command, FileFlags& flags) {
+  command.add_option("--skip-lines", flags.skip_lines, "Lines at the front of a text that are no table");
+  command.add_option("--comment", flags.comment, "What begins a line that is no row, e.g. ';'");
+}
 
 Status leave_out_lines(const FileFlags& flags, Inputs& inputs) {
   if (flags.skip_lines == 0 && flags.comment.empty()) {

@@ -1,5 +1,6 @@
 #include "clients/cli/regress_run.hpp"
 
+#include "clients/cli/left_out_lines.hpp"
 #include "clients/cli/regress_input.hpp"
 #include "clients/cli/regress_outputs.hpp"
 #include "clients/cli/regress_state.hpp"
@@ -254,8 +255,7 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
   command.add_option("--stream", flags.file.stream,
                      "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command.add_option("--condition", flags.file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
-  command.add_option("--skip-lines", flags.file.skip_lines, "Lines at the front of a text that are no table");
-  command.add_option("--comment", flags.file.comment, "What begins a line that is no row, e.g. ';'");
+  add_left_out_lines(command, flags.file);
   command.add_option("--calibration", flags.file.calibration,
                      "Calibration that the recordings are corrected with first");
   command.add_option("--models", flags.models, "Candidate models, e.g. WN,WN+GM")
