@@ -169,7 +169,7 @@ Result<std::vector<StoredTableRequest>> requests_of_axes(Store& store, const Sto
     return fail(axes.error());
   }
   if (axes->empty()) {
-    return fail(ErrorCode::NotFound, "No characterised channel of device '" + device->name + "' is a " +
+    return fail(ErrorCode::NotFound, "Device '" + device->name + "' has no characterised " +
                                          std::string(sensor_of(wanted->quantity)) +
                                          " about an axis; characterise a recording of it first.");
   }

@@ -257,8 +257,8 @@ class Store {
                                                            std::int64_t expected_revision) = 0;
   /// Stands for every revision: of a damaged row nobody knows it.
   static constexpr std::int64_t kAnyRevision = -1;
-  /// Removes a recording that no job is using, damaged or not; its results go with it, and what they took part in is
-  /// pooled anew without them. NotFound; Conflict (revision; running job).
+  /// Removes a recording that no job is using and no study or drive names, or a damaged one; its results go with it,
+  /// and what they took part in is pooled anew without them. NotFound; Conflict (revision; running job; what names it).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
   /// Hashes of all blob rows, for the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> blob_hashes() = 0;

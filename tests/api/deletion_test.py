@@ -53,12 +53,14 @@ class Deletion(DaemonTest):
         drive = self.made("/v1/drives", samples.drive_document(*(recording.json["id"] for recording in recordings)))
         driven = self.daemon.finished(self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": drive.json["id"]})).json["id"])
         for recording in recordings:
-            self.expect(204, self.delete(recording.headers["location"], "*"))
+            self.problem(409, "conflict", self.delete(recording.headers["location"], "*"), drives=drive.json["id"])
         self.problem(409, "conflict", self.delete("/v1/devices/driven", "*"), drives=drive.json["id"])
         self.problem(412, "precondition_failed", self.delete(drive.headers["location"], '"other"'))
         self.expect(204, self.delete(drive.headers["location"], drive.headers["etag"] if "etag" in drive.headers else None))
         self.problem(404, "not_found", self.delete(drive.headers["location"]))
         self.assertEqual(self.daemon.get(f"/v1/jobs/{driven['id']}").json["state"], driven["state"], "what was found of it stays")
+        for recording in recordings:
+            self.expect(204, self.delete(recording.headers["location"], "*"))
         self.expect(204, self.delete("/v1/devices/driven", "*"))
 
     def test_many_dependents_are_counted(self) -> None:

@@ -126,11 +126,14 @@ class Investigations(DaemonTest):
         self.assertEqual(result["findings"], [])
         self.assertIn("fewer than 500 samples", " ".join(result["notes"]))
 
-    def test_a_removed_recording_takes_its_investigations_along(self) -> None:
+    def test_a_recording_stays_while_a_study_names_it(self) -> None:
         keeps, goes = self.recording("removing", 41), self.recording("removing", 42)
-        result = self.investigated(self.study("removing", [keeps, goes]))
-        self.expect(204, self.daemon.request("DELETE", f"/v1/recordings/{goes}", headers={"If-Match": "*"}))
-        self.problem(404, "not_found", self.daemon.get(f"/v1/investigations/{result['id']}"))
+        study = self.study("removing", [keeps, goes])
+        result = self.investigated(study)
+        refused = self.problem(409, "conflict", self.daemon.request("DELETE", f"/v1/recordings/{goes}", headers={"If-Match": "*"}), studies=study)
+        self.assertEqual(refused["detail"], f"What depends on the recording must go first: 1 study ({study}).")
+        for target in (f"/v1/investigations/{result['id']}", f"/v1/studies/{study}", f"/v1/recordings/{goes}"):
+            self.expect(204, self.daemon.request("DELETE", target, headers={"If-Match": "*"} if "recordings" in target else {}))
         self.expect(200, self.daemon.get(f"/v1/models/{result['model']}"))
 
     def test_progress_is_reported_and_a_running_job_cancelled(self) -> None:

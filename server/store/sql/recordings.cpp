@@ -334,6 +334,11 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
     return fail(ErrorCode::Conflict, "Job " + users->front() + " is using the recording; wait for it or cancel it.",
                 {{"job", users->front()}});
   }
+  // A damaged one stands in the way of what names it, and comes back by an upload.
+  if (Status unnamed = expected_revision == Store::kAnyRevision ? Status() : require_unnamed_recording(connection, id);
+      !unnamed) {
+    return unnamed;
+  }
   if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
     return removed;
   }

@@ -33,6 +33,13 @@ const std::vector<Dependents> kOfDevice{
     {"running job", "running jobs",
      "SELECT id, count(*) OVER () FROM jobs JOIN job_devices ON job_id = id WHERE state IN ('queued', 'running') AND "
      "device_id = ?1 ORDER BY id LIMIT ?2"}};
+constexpr Dependents kStudiesThatName{
+    "study", "studies",
+    "SELECT id, count(*) OVER () FROM studies WHERE instr(document_json, ?1) > 0 ORDER BY id LIMIT ?2"};
+const std::vector<Dependents> kOfRecording{
+    kStudiesThatName,
+    {"drive", "drives",
+     "SELECT id, count(*) OVER () FROM drives WHERE instr(document_json, ?1) > 0 ORDER BY id LIMIT ?2"}};
 const std::vector<Dependents> kOfStudy{
     {"investigation", "investigations",
      "SELECT id, count(*) OVER () FROM investigations WHERE study_id = ?1 ORDER BY id LIMIT ?2"},
@@ -41,8 +48,7 @@ const std::vector<Dependents> kOfDrive{kLiveJobs};
 const std::vector<Dependents> kOfCalibration{
     {"recording", "recordings",
      "SELECT id, count(*) OVER () FROM recordings WHERE instr(metadata_json, ?1) > 0 ORDER BY id LIMIT ?2"},
-    {"study", "studies",
-     "SELECT id, count(*) OVER () FROM studies WHERE instr(document_json, ?1) > 0 ORDER BY id LIMIT ?2"},
+    kStudiesThatName,
     kLiveJobs};
 const std::vector<Dependents> kOfModel{
     {"model", "models", "SELECT id, count(*) OVER () FROM models WHERE parent_id = ?1 ORDER BY id LIMIT ?2"},
@@ -117,6 +123,10 @@ Status run_all(Connection& connection, const std::vector<std::string_view>& stat
 }
 
 }  // namespace
+
+Status require_unnamed_recording(Connection& connection, std::string_view id) {
+  return require_free(connection, kOfRecording, "recording", id);
+}
 
 Status remove_device(Connection& connection, std::string_view id, std::int64_t expected_revision) {
   const Result<Device> found = device(connection, id);

@@ -175,6 +175,8 @@ namespace driftlab::server::tables {
 [[nodiscard]] Result<std::string> artefact(Connection& connection, std::string_view job_id, std::string_view name);
 
 // ---- removing what others may depend on
+/// Refuses the removal of a recording that a study or a drive names. Error: Conflict, which names them.
+[[nodiscard]] Status require_unnamed_recording(Connection& connection, std::string_view id);
 [[nodiscard]] Status remove_device(Connection& connection, std::string_view id, std::int64_t expected_revision);
 [[nodiscard]] Status remove_study(Connection& connection, std::string_view id);
 [[nodiscard]] Status remove_drive(Connection& connection, std::string_view id);
