@@ -1,7 +1,9 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/json_file.hpp"
+#include "clients/cli/left_out_lines.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
+#include "clients/cli/stored_document.hpp"
 #include "schema/json/report_page.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +18,7 @@ namespace {
 struct PlotFlags {
   std::vector<std::string> files;
   FileFlags file;
+  std::string server;
   std::string output = "-";
   std::string channel;
 };
@@ -27,8 +30,35 @@ struct Documented {
   std::optional<TabledCampaign> campaign = std::nullopt;  ///< of recordings characterised now
 };
 
+/// What a daemon has stored of a device, or under an id.
+tl::expected<Documented, Failure> stored_there(const PlotFlags& flags) {
+  if (flags.files.size() + (flags.file.device.empty() ? 0 : 1) != 1) {
+    return tl::unexpected(Failure{{ErrorCode::InvalidArgument,
+                                   "With --server name one thing that the daemon has stored: an id (rec_…, inv_… or "
+                                   "job_…), or a device (--device NAME).",
+                                   {}},
+                                  Exit::BadInput});
+  }
+  auto stored = flags.files.empty() ? fetch_tables(flags.server, flags.file.device)
+                                    : fetch_result(flags.server, flags.files.front());
+  if (!stored) {
+    return tl::unexpected(stored.error());
+  }
+  return Documented{stored->device, {stored->device}, std::move(stored->document)};
+}
+
 /// A document as it stands, or recordings characterised now, with the name of their device.
 tl::expected<Documented, Failure> document_of(const PlotFlags& flags) {
+  if (!flags.server.empty()) {
+    return stored_there(flags);
+  }
+  if (flags.files.empty()) {
+    return tl::unexpected(Failure{
+        {ErrorCode::InvalidArgument,
+         "Name " + std::string(kWrittenByJson) + ", a recording or a study.json; or --server and what is stored there.",
+         {}},
+        Exit::BadInput});
+  }
   if (flags.files.size() == 1 && flags.files.front().ends_with(".json")) {
     auto document = read_json_file(flags.files.front(), kWrittenByJson);
     if (!document) {
@@ -85,17 +115,20 @@ Exit run_report(const PlotFlags& flags) {
 }
 
 void add_inputs(CLI::App& command, const std::shared_ptr<PlotFlags>& flags) {
-  command.add_option("FILE", flags->files, "A document that --json wrote, recordings, or one study.json")->required();
+  command.add_option(
+      "FILE", flags->files,
+      "A document that --json wrote, recordings, or one study.json; with --server an id: rec_…, inv_… or job_…");
   command.add_option("--rate-hz", flags->file.rate_hz, "Sampling rate of recordings; needed without a time column");
   command.add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… as for characterise");
   command.add_option("--stream", flags->file.stream,
                      "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command.add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
-  command.add_option("--device", flags->file.device, "Name of the device");
-  command.add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
-  command.add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
+  command.add_option("--device", flags->file.device,
+                     "Name of the device; with --server its parameter tables are shown");
+  add_left_out_lines(command, flags->file);
   command.add_option("--calibration", flags->file.calibration,
                      "Correct the readings by what `driftlab calibrate --json` wrote to this file");
+  command.add_option("--server", flags->server, "Show what the daemon at this address has stored");
 }
 
 }  // namespace

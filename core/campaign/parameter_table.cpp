@@ -279,7 +279,7 @@ void compare_rows(ParameterTable& table) {
 /// Errors: those of build_parameter_table.
 Status check_sources(const TableRequest& request, const std::vector<TableSource>& sources) {
   if (sources.empty()) {
-    return fail(ErrorCode::NotFound, "No characterised channel of device '" + request.device + "' is a " +
+    return fail(ErrorCode::NotFound, "Device '" + request.device + "' has no characterised " +
                                          std::string(sensor_of(request.quantity)) +
                                          (request.axis.empty() ? "" : " about axis " + request.axis) +
                                          "; characterise a recording of it first.");

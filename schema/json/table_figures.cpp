@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace driftlab {
@@ -70,6 +71,7 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
   std::vector<NamedFigure> figures;
   const std::string title = document.value("device", "") + ", " + document.value("sensor", "") + " " +
                             (document.at("axis").is_string() ? document.at("axis").get<std::string>() : "");
+  const std::string by = method_of_table(document);
   const std::vector<Dynamics> kinds = dynamics_of(document.at("rows"));
   for (const Json& column : document.at("columns")) {
     const auto key = column.at("key").get<std::string>();
@@ -105,7 +107,7 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
       named.append(": ").append(name);
       Figure figure{.title = std::move(named),
                     .sentence = name + " under each condition with its 95 % interval, from zero.",
-                    .source = "driftlab " DRIFTLAB_VERSION ", " + text_member(document, "model")};
+                    .source = "driftlab " DRIFTLAB_VERSION + (by.empty() ? "" : ", " + by)};
       figure.plots.push_back(std::move(plot));
       figures.push_back({kinds.size() > 1 ? word(key + "-" + dynamics.kind) : word(key), std::move(figure)});
     }
@@ -113,10 +115,20 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
   return figures;
 }
 
+std::string method_of_table(const Json& table) {
+  const std::string model = text_member(table, "model");
+  return model.empty() && text_member(table, "method") == "av" ? "Allan variance" : model;
+}
+
 std::vector<NamedFigure> figures_of_tables(const Json& document, const std::string& parameter) {
+  std::set<std::string> sensors;
+  for (const Json& table : document.at("tables")) {
+    sensors.insert(text_member(table, "sensor"));
+  }
   std::vector<NamedFigure> figures;
   for (const Json& table : document.at("tables")) {
-    const std::string axis = table.at("axis").is_string() ? table.at("axis").get<std::string>() : "";
+    const std::string of_sensor = sensors.size() > 1 ? text_member(table, "sensor") + "-" : "";
+    const std::string axis = of_sensor + text_member(table, "axis");
     for (NamedFigure& figure : figures_of_table(table, parameter)) {
       figures.push_back({axis.empty() ? figure.name : word(axis + "-" + figure.name), std::move(figure.figure)});
     }

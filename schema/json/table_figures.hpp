@@ -12,7 +12,10 @@ namespace driftlab {
 /// where the document is not as driftlab writes it.
 [[nodiscard]] std::vector<NamedFigure> figures_of_table(const Json& document, const std::string& parameter);
 
-/// Of the tables of all axes of a sensor, named by their axis.
+/// How a table came about: its model, `Allan variance`, or empty where it does not say.
+[[nodiscard]] std::string method_of_table(const Json& table);
+
+/// Of the tables of all axes of a sensor, named by their axis; of several sensors by both.
 [[nodiscard]] std::vector<NamedFigure> figures_of_tables(const Json& document, const std::string& parameter);
 
 }  // namespace driftlab

@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import samples
+from daemon import Daemon
 
 SYMBOLS = json.loads((Path(__file__).parents[2] / "schema/names.json").read_text())["parameters"]
 PROGRAM = os.environ.get("DRIFTLAB", "")
@@ -95,6 +96,35 @@ class Pages(unittest.TestCase):
         self.assertRegex(page, r'<p class="verdict">[^<]*after 10 s without GNSS')
         for text in ("<h2>Filters</h2>", "<h2>What the paper claims</h2>", "2 runs, seed 1, algorithm "):
             self.assertIn(text, page)
+
+    def test_of_what_a_daemon_has_stored(self) -> None:
+        with Daemon() as daemon:
+            server = ("--server", f"http://127.0.0.1:{daemon.port}")
+            self.said("characterise", "1.csv", "2.csv", "--device", "imu-07", *server)
+            self.said("regress", "--baseline", "3.csv", "--candidate", "4.csv", "--device", "imu-08", "--candidate-label", "firmware=2", *server)
+            recording = daemon.items("/v1/recordings?device=imu-07")[-1]
+            [run] = daemon.items("/v1/regressions")
+            device = self.said("report", "--device", "imu-07", *server)
+            one = self.said("report", recording["id"], *server)
+            gate = self.said("report", run["id"], *server)
+            self.assertIn("<h1>imu-07</h1>", device)
+            for table in ("gyroscope z, WN+GM", "gyroscope z, Allan variance"):
+                self.assertIn(f"<h2>{table}</h2>", device)
+            # One of the two recordings that one job has characterised, called by its name.
+            self.assertIn("<h1>imu-07</h1>", one)
+            self.assertIn(f"<h2>{recording['name']}</h2>", one)
+            self.assertEqual(one.count("<svg"), 1)
+            self.assertIn("<h2>Sessions</h2>", gate)
+            ElementTree.fromstring(self.said("plot", run["id"], "--output", "gate.svg", *server) or (self.folder / "gate.svg").read_text())
+            for arguments, sentence in ((("report", "1.csv"), "is no such id"), (("report",), "name one thing"),
+                                        (("report", recording["id"], "--device", "imu-07"), "name one thing"),
+                                        (("report", "--device", "nobody"), "nobody"),
+                                        (("report", "rec_01M7YQ3DCDDZGTYNAE70E6BCA5"), "no recording")):
+                done = subprocess.run([PROGRAM, *arguments, *server], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
+                self.assertIn(sentence, done.stderr)
+        done = subprocess.run([PROGRAM, "report", "--device", "imu-07", *server], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 4, done.stderr)
 
 
 if __name__ == "__main__":

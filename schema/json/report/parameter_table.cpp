@@ -3,6 +3,7 @@
 #include "schema/json/figure_values.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
+#include "schema/json/table_figures.hpp"
 
 #include <string>
 #include <vector>
@@ -42,9 +43,9 @@ std::string one_table(const Json& table) {
     }
     rows += row_html(cells);
   }
-  const std::string model = text_of(table, "model");
-  return table_html(text_of(table, "sensor") + " " + text_of(table, "axis") + (model.empty() ? "" : ", " + model),
-                    columns, rows);
+  const std::string by = method_of_table(table);
+  return table_html(text_of(table, "sensor") + " " + text_of(table, "axis") + (by.empty() ? "" : ", " + by), columns,
+                    rows);
 }
 
 }  // namespace

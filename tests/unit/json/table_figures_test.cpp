@@ -14,6 +14,7 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Json row(const Json& condition, double value) {
   return {{"condition", condition}, {"values", {{"N", {{"value", value}, {"ci95", {0.9 * value, 1.1 * value}}}}}}};
@@ -67,6 +68,17 @@ TEST(TableFigures, TheTablesOfAllAxesAreDrawnByAxis) {
   EXPECT_FALSE(figures_of(all, "K"));
 }
 
+TEST(TableFigures, TheTablesOfSeveralSensorsAreDrawnBySensorToo) {
+  Json other = table("x", {row(kStatic, 0.1)});
+  other["sensor"] = "accelerometer";
+  const Json all{{"device", "one"}, {"tables", {table("x", {row(kStatic, 0.1)}), other}}};
+  const auto figures = figures_of(all, "N");
+  ASSERT_TRUE(figures) << figures.error().message;
+  ASSERT_EQ(figures->size(), 2U);
+  EXPECT_EQ((*figures)[0].name, "gyroscope-x-N");
+  EXPECT_EQ((*figures)[1].name, "accelerometer-x-N");
+}
+
 TEST(TableReports, HaveEveryNumberWithItsInterval) {
   Json one = table("z", {row(kStatic, 0.1)});
   one["model"] = nullptr;  // as a table by Allan variance has it
@@ -76,9 +88,11 @@ TEST(TableReports, HaveEveryNumberWithItsInterval) {
   const auto page = report_page(one, "one", "");
   ASSERT_TRUE(page) << page.error().message;
   EXPECT_THAT(*page, HasSubstr("<td>static</td><td>0.100 [0.090, 0.110]</td><td>1.25</td>"));
+  one["method"] = "av";
   const auto all = report_page({{"device", "one"}, {"tables", {one, table("x", {row(kStatic, 0.2)})}}}, "one", "");
   ASSERT_TRUE(all) << all.error().message;
-  EXPECT_THAT(*all, HasSubstr("gyroscope z"));
+  EXPECT_THAT(*all, HasSubstr("<h2>gyroscope z, Allan variance</h2>"));
+  EXPECT_THAT(*all, Not(HasSubstr("driftlab " DRIFTLAB_VERSION ", <")));
   EXPECT_THAT(*all, HasSubstr("gyroscope x"));
 }
 

@@ -1,0 +1,113 @@
+#include "clients/cli/stored_document.hpp"
+
+#include "clients/cli/print_answer.hpp"
+
+#include <optional>
+#include <set>
+
+namespace driftlab::cli {
+namespace {
+
+std::string text_of(const Json& document, const char* member) {
+  const Json text = document.value(member, Json(nullptr));
+  return text.is_string() ? text.get<std::string>() : "";
+}
+
+/// What it says of one recording; a job may have characterised several.
+Json of_recording(Json document, const std::string& id) {
+  Json kept = Json::array();
+  for (Json& recording : document["recordings"]) {
+    if (text_of(recording, "id") == id) {
+      kept.push_back(std::move(recording));
+    }
+  }
+  return Json{{"recordings", std::move(kept)}};
+}
+
+/// Calls the recordings of a characterisation by their names, and says whose they are where all are of one device.
+tl::expected<std::string, Failure> name_recordings(const std::string& server, Json& document) {
+  std::set<std::string> devices;
+  for (Json& recording : document["recordings"]) {
+    const auto stored = fetch_document(server, "/v1/recordings/" + text_of(recording, "id"));
+    if (!stored) {
+      return tl::unexpected(stored.error());
+    }
+    devices.insert(text_of(*stored, "device_name"));
+    if (const std::string name = text_of(*stored, "name"); !name.empty()) {
+      recording["id"] = name;
+    }
+  }
+  return devices.size() == 1 ? *devices.begin() : "";
+}
+
+bool is_characterisation(const Json& document) {
+  const Json recordings = document.value("recordings", Json(nullptr));
+  return recordings.is_array() && !recordings.empty() && recordings.front().contains("channels");
+}
+
+tl::expected<StoredDocument, Failure> with_names(const std::string& server, Json document) {
+  StoredDocument stored{"", std::move(document)};
+  if (is_characterisation(stored.document)) {
+    auto device = name_recordings(server, stored.document);
+    if (!device) {
+      return tl::unexpected(device.error());
+    }
+    stored.device = std::move(*device);
+  }
+  return stored;
+}
+
+}  // namespace
+
+tl::expected<StoredDocument, Failure> fetch_result(const std::string& server, const std::string& id) {
+  std::string target = "/v1/jobs/" + percent_encode(id) + "/result";
+  if (id.starts_with("inv_")) {
+    target = "/v1/investigations/" + percent_encode(id);
+  } else if (id.starts_with("rec_")) {
+    const auto newest = fetch_document(server, "/v1/recordings/" + percent_encode(id) + "/characterisation");
+    if (!newest) {
+      return tl::unexpected(newest.error());
+    }
+    target = "/v1/jobs/" + text_of(*newest, "job") + "/result";
+  } else if (!id.starts_with("job_")) {
+    return tl::unexpected(
+        Failure{{ErrorCode::InvalidArgument,
+                 "With --server name what the daemon has stored by its id (rec_…, inv_… or job_…), or a device "
+                 "(--device NAME) and nothing else; '" +
+                     id + "' is no such id.",
+                 {}},
+                Exit::BadInput});
+  }
+  auto document = fetch_document(server, target);
+  if (!document) {
+    return tl::unexpected(document.error());
+  }
+  return with_names(server, id.starts_with("rec_") ? of_recording(std::move(*document), id) : std::move(*document));
+}
+
+tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, const std::string& device) {
+  Json tables = Json::array();
+  std::optional<Failure> first;
+  for (const char* const sensor : {"gyroscope", "accelerometer"}) {
+    for (const char* const method : {"gmwm", "av"}) {
+      const auto answer = fetch_document(server, "/v1/parameter-tables?device=" + percent_encode(device) +
+                                                     "&sensor=" + sensor + "&axis=all&method=" + method);
+      if (!answer && answer.error().exit != Exit::BadInput) {
+        return tl::unexpected(answer.error());
+      }
+      if (!answer) {
+        first = first ? first : answer.error();
+        continue;
+      }
+      for (const Json& table : answer->at("tables")) {
+        tables.push_back(table);
+      }
+    }
+  }
+  if (tables.empty()) {
+    return tl::unexpected(*first);
+  }
+  return StoredDocument{device, Json{{"device", device}, {"tables", std::move(tables)}}};
+}
+
+}  // namespace driftlab::cli
