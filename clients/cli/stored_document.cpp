@@ -32,12 +32,17 @@ tl::expected<std::string, Failure> name_recordings(const std::string& server, Js
     if (!stored) {
       return tl::unexpected(stored.error());
     }
-    devices.insert(text_of(*stored, "device_name"));
-    if (const std::string name = text_of(*stored, "name"); !name.empty()) {
+    devices.insert(text_of(*stored, "device"));
+    if (const std::string name = text_of(stored->at("file"), "name"); !name.empty()) {
       recording["id"] = name;
     }
   }
-  return devices.size() == 1 ? *devices.begin() : "";
+  if (devices.size() != 1) {
+    return std::string();
+  }
+  return fetch_document(server, "/v1/devices/" + *devices.begin()).map([](const Json& device) {
+    return text_of(device, "name");
+  });
 }
 
 bool is_characterisation(const Json& document) {

@@ -12,8 +12,8 @@ struct StoredDocument {
 };
 
 /// The result behind an id: of a recording (`rec_…`, what its newest characterisation says of it), an investigation
-/// (`inv_…`) or a job (`job_…`, regression runs and evaluations among them). Recordings are called by their names.
-/// Errors are the daemon's, and BadInput where the id is none of these.
+/// (`inv_…`) or a job (`job_…`, regression runs and evaluations among them). Recordings are called by the names of
+/// their files. Errors are the daemon's, and BadInput where the id is none of these.
 [[nodiscard]] tl::expected<StoredDocument, Failure> fetch_result(const std::string& server, const std::string& id);
 
 /// The parameter tables of a device, of both sensors by both methods, about each axis that has results: one document

@@ -112,7 +112,7 @@ class Pages(unittest.TestCase):
                 self.assertIn(f"<h2>{table}</h2>", device)
             # One of the two recordings that one job has characterised, called by its name.
             self.assertIn("<h1>imu-07</h1>", one)
-            self.assertIn(f"<h2>{recording['name']}</h2>", one)
+            self.assertIn(f"<h2>{recording['file']['name']}</h2>", one)
             self.assertEqual(one.count("<svg"), 1)
             self.assertIn("<h2>Sessions</h2>", gate)
             ElementTree.fromstring(self.said("plot", run["id"], "--output", "gate.svg", *server) or (self.folder / "gate.svg").read_text())
