@@ -293,6 +293,23 @@ class CommandLine(DaemonTest):
             with self.subTest(flag):
                 self.assertIn(f"{flag} cannot stand beside it", self.refused(2, "characterise", "beside.json", flag, value))
 
+    def test_lines_above_a_table_are_left_out_where_a_triad_is_calibrated(self) -> None:
+        draw = random.Random(3)
+
+        def attitude() -> list[float]:
+            along = [draw.gauss(0.0, 1.0) for _ in range(3)]
+            return [9.80665 * value / math.hypot(*along) for value in along]
+        rows = []
+        for _ in range(14):
+            rests = attitude()
+            rows += [[value + draw.gauss(0.0, 0.01) for value in rests] for _ in range(500)]
+            rows += [[value + draw.gauss(0.0, 3.0) for value in attitude()] for _ in range(100)]
+        lines = ["; by hand", "12"] + [",".join(f"{value:.5f}" for value in row) for row in rows]
+        (self.folder / "turned.csv").write_text("\n".join(lines))
+        told = ("--rate-hz", "100", "--columns", "0=specific_force:x,1=specific_force:y,2=specific_force:z")
+        self.assertIn("the first row has 1", self.refused(2, "calibrate", "turned.csv", *told))
+        self.assertIn("from 14 positions", self.said("calibrate", "turned.csv", "--skip-lines", "2", "--comment", ";", *told))
+
 
 class BehindALongJob(DaemonTest):
     """One worker, which a long evaluation keeps from pooling what commands ask for."""
