@@ -187,14 +187,8 @@ Result<Response> get_calibration(ApiContext& context, const Request& request) {
 }
 
 Result<Response> delete_calibration(ApiContext& context, const Request& request) {
-  const auto shown = get_calibration(context, request);
-  if (!shown) {
-    return fail(shown.error());
-  }
-  if (auto refusal = refuse_other_content(request, *shown)) {
-    return std::move(*refusal);
-  }
-  return removed_response(context.store.remove_calibration(request.parameters[0]));
+  return remove_shown(request, get_calibration(context, request),
+                      [&] { return context.store.remove_calibration(request.parameters[0]); });
 }
 
 }  // namespace

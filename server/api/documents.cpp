@@ -252,6 +252,19 @@ Result<Response> removed_response(const Status& removed) {
   return response;
 }
 
+Result<Response> remove_shown(const Request& request, const Result<Response>& shown,
+                              const std::function<Status()>& remove) {
+  if (!shown) {
+    const bool damaged = !damaged_row_of(shown.error()).empty();
+    return damaged && request.header("if-match").value_or("*") == "*" ? removed_response(remove())
+                                                                      : fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(remove());
+}
+
 Result<std::optional<std::string>> device_filter(Store& store, const Request& request) {
   const auto name = request.parameter("device");
   if (!name) {

@@ -5,6 +5,7 @@
 #include "server/store/cursor.hpp"
 #include "server/store/store.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -93,6 +94,11 @@ template <class Read>
 
 /// 204, the answer to a DELETE that was done, or its error.
 [[nodiscard]] Result<Response> removed_response(const Status& removed);
+
+/// The answer to a DELETE of what is made once: `shown` is the answer to its GET, of whose content If-Match may speak.
+/// What is damaged cannot be shown and goes all the same, where If-Match is `*` or was not sent.
+[[nodiscard]] Result<Response> remove_shown(const Request& request, const Result<Response>& shown,
+                                            const std::function<Status()>& remove);
 
 /// A fault at `pointer` where a text is longer than the budget of that name allows.
 void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,

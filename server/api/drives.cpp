@@ -65,14 +65,8 @@ Result<Response> get_drive(ApiContext& context, const Request& request) {
 }
 
 Result<Response> delete_drive(ApiContext& context, const Request& request) {
-  const auto shown = get_drive(context, request);
-  if (!shown) {
-    return fail(shown.error());
-  }
-  if (auto refusal = refuse_other_content(request, *shown)) {
-    return std::move(*refusal);
-  }
-  return removed_response(context.store.remove_drive(request.parameters[0]));
+  return remove_shown(request, get_drive(context, request),
+                      [&] { return context.store.remove_drive(request.parameters[0]); });
 }
 
 }  // namespace

@@ -69,14 +69,8 @@ Result<Response> get_investigation(ApiContext& context, const Request& request) 
 }
 
 Result<Response> delete_investigation(ApiContext& context, const Request& request) {
-  const auto shown = get_investigation(context, request);
-  if (!shown) {
-    return fail(shown.error());
-  }
-  if (auto refusal = refuse_other_content(request, *shown)) {
-    return std::move(*refusal);
-  }
-  return removed_response(context.store.remove_investigation(request.parameters[0]));
+  return remove_shown(request, get_investigation(context, request),
+                      [&] { return context.store.remove_investigation(request.parameters[0]); });
 }
 
 }  // namespace

@@ -101,14 +101,8 @@ Result<Response> create_model(ApiContext& context, const Request& request) {
 }
 
 Result<Response> delete_model(ApiContext& context, const Request& request) {
-  const auto shown = get_model(context, request);
-  if (!shown) {
-    return fail(shown.error());
-  }
-  if (auto refusal = refuse_other_content(request, *shown)) {
-    return std::move(*refusal);
-  }
-  return removed_response(context.store.remove_model(request.parameters[0]));
+  return remove_shown(request, get_model(context, request),
+                      [&] { return context.store.remove_model(request.parameters[0]); });
 }
 
 }  // namespace

@@ -138,14 +138,8 @@ Result<Response> get_study(ApiContext& context, const Request& request) {
 }
 
 Result<Response> delete_study(ApiContext& context, const Request& request) {
-  const auto shown = get_study(context, request);
-  if (!shown) {
-    return fail(shown.error());
-  }
-  if (auto refusal = refuse_other_content(request, *shown)) {
-    return std::move(*refusal);
-  }
-  return removed_response(context.store.remove_study(request.parameters[0]));
+  return remove_shown(request, get_study(context, request),
+                      [&] { return context.store.remove_study(request.parameters[0]); });
 }
 
 }  // namespace

@@ -168,8 +168,7 @@ class Operations(DaemonTest):
         drive, _ = (daemon.post("/v1/drives", samples.drive_document(imu, gnss)) for _ in range(2))
         driven, _ = (daemon.post("/v1/drive-evaluations", {"drive": drive.json["id"]}) for _ in range(2))
         daemon.finished(driven.json["id"])
-        apply = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
-        body = {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": apply}}}
+        body = {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": samples.CORRECTION}}}
         calibration, _ = (daemon.post("/v1/calibrations", body) for _ in range(2))
         asked = daemon.post("/v1/jobs", {"kind": "investigate", "inputs": {"study": study.json["id"]}})
         daemon.finished(asked.json["id"])

@@ -8,9 +8,6 @@ import samples
 from daemon import Answer, Daemon
 from suite import DaemonTest
 
-APPLY = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
-WHITE = {"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}
-
 
 class Deletion(DaemonTest):
     def delete(self, target: str, etag: str | None = None) -> Answer:
@@ -26,9 +23,9 @@ class Deletion(DaemonTest):
     def test_a_device_goes_last(self) -> None:
         recording = self.recording("whole")
         self.daemon.finished(self.daemon.characterise(recording.json["id"], models=["WN"]).json["id"])
-        calibration = self.made("/v1/calibrations", {"device": {"id": "whole"}, "calibration": {"gyroscope": {"apply": APPLY}}})
+        calibration = self.made("/v1/calibrations", {"device": {"id": "whole"}, "calibration": {"gyroscope": {"apply": samples.CORRECTION}}})
         study = self.made("/v1/studies", {"device": {"id": "whole"}, "recordings": [{"recording": recording.json["id"]}]})
-        model = self.made("/v1/models", {"name": "white", "device": "whole", "processes": [WHITE]})
+        model = self.made("/v1/models", {"name": "white", "device": "whole", "processes": [samples.WHITE_NOISE]})
         self.problem(428, "precondition_required", self.delete("/v1/devices/whole"))
         self.problem(412, "precondition_failed", self.delete("/v1/devices/whole", '"other"'))
         refused = self.problem(409, "conflict", self.delete("/v1/devices/whole", "*"), recordings=recording.json["id"], studies=study.json["id"],
@@ -87,7 +84,7 @@ class Deletion(DaemonTest):
         self.expect(204, self.delete(study.headers["location"]))
 
     def test_a_calibration_stays_while_a_recording_is_corrected_by_it(self) -> None:
-        calibration = self.made("/v1/calibrations", {"device": {"id": "corrected"}, "calibration": {"gyroscope": {"apply": APPLY}}})
+        calibration = self.made("/v1/calibrations", {"device": {"id": "corrected"}, "calibration": {"gyroscope": {"apply": samples.CORRECTION}}})
         columns = ",".join(f"g{axis}=angular_rate:{axis}:rad/s" for axis in "xyz")
         content = samples.csv(samples.noise(2000, 3, 3), ["gx", "gy", "gz"])
         recording = self.expect(201, self.daemon.upload(content, device="corrected", rate_hz=100, columns=columns, calibration=calibration.json["id"]))
@@ -97,8 +94,8 @@ class Deletion(DaemonTest):
         self.expect(204, self.delete(calibration.headers["location"]))
 
     def test_a_model_stays_while_it_has_revisions(self) -> None:
-        parent = self.made("/v1/models", {"name": "parent", "processes": [WHITE]})
-        child = self.made("/v1/models", {"name": "child", "parent": parent.json["id"], "processes": [WHITE]})
+        parent = self.made("/v1/models", {"name": "parent", "processes": [samples.WHITE_NOISE]})
+        child = self.made("/v1/models", {"name": "child", "parent": parent.json["id"], "processes": [samples.WHITE_NOISE]})
         self.problem(409, "conflict", self.delete(parent.headers["location"]), models=child.json["id"])
         self.expect(204, self.delete(child.headers["location"]))
         self.expect(204, self.delete(parent.headers["location"]))

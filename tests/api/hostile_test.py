@@ -14,7 +14,6 @@ import select
 import socket
 import subprocess
 import sys
-import threading
 import time
 import unittest
 import urllib.parse
@@ -308,8 +307,7 @@ class Grammar(DaemonTest):
         recordings = [answer.json["id"] for answer in made]
         daemon.finished(daemon.characterise(*recordings, models=["WN", "WN+RW"]).json["id"])
         study = daemon.post("/v1/studies", {"device": {"id": "phone-07"}, "recordings": [{"recording": recordings[0]}]}).json["id"]
-        apply = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
-        calibration = daemon.post("/v1/calibrations", {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": apply}}}).json["id"]
+        calibration = daemon.post("/v1/calibrations", {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": samples.CORRECTION}}}).json["id"]
         model = daemon.post("/v1/models", {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]}).json["id"]
         evaluation = daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}).json["id"]
         daemon.finished(evaluation)
@@ -318,7 +316,7 @@ class Grammar(DaemonTest):
         # Bodies that ask for what there is, with something that makes each another one.
         cls.good = {
             "createStudy": lambda n: {"device": {"id": "phone-07"}, "recordings": [{"id": f"r{n}", "recording": cls.random.choice(recordings)}]},
-            "createCalibration": lambda n: {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": {**apply, "bias": [0.01, n / 1000, 0]}}}},
+            "createCalibration": lambda n: {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": {**samples.CORRECTION, "bias": [0.01, n / 1000, 0]}}}},
             "createModel": lambda n: {"name": f"white {n}", "processes": [white], **cls.random.choice([{}, {"device": "phone-07"}, {"parent": model}])},
             "createJob": lambda n: {"kind": "characterise", "inputs": {"recordings": [cls.random.choice(recordings)]}, "parameters": {"models": ["WN"], "seed": n}},
             "createOutageEvaluation": lambda n: {"scenario": "paper", "runs": 2, "seed": n},

@@ -8,7 +8,9 @@ import time
 import unittest
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
+import samples
 from daemon import PATIENCE_S, PROGRAM, Daemon
 from operating import csv, flip, tool
 
@@ -134,6 +136,25 @@ class Stored(unittest.TestCase):
             self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": '"1"'}).status, 500)
             gone = daemon.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": "*"})
             self.assertEqual(gone.status, 204, gone.describe())
+
+    def test_what_is_made_once_can_be_deleted_though_its_row_is_damaged(self) -> None:
+        made: dict[str, dict[str, Any]] = {"studies": {"device": {"id": "a"}}, "calibrations": {"device": {"id": "a"}, "calibration": {"gyroscope": {"apply": samples.CORRECTION}}},
+                "models": {"name": "white", "device": "a", "processes": [samples.WHITE_NOISE]}}
+        with Daemon(self.folder / "data") as daemon:
+            recording = daemon.upload(csv(3000), device="a").json["id"]
+            made["studies"]["recordings"] = [{"recording": recording}]
+            places = {table: daemon.post(f"/v1/{table}", body).headers["location"] for table, body in made.items()}
+            self.assertEqual(daemon.terminate(), 0)
+        with closing(sqlite3.connect(self.folder / "data/driftlab.db")) as database, database:
+            for table in made:
+                self.assertEqual(database.execute(f"UPDATE {table} SET document_json = replace(document_json, 'r', 's')").rowcount, 1, table)
+        with Daemon(self.folder / "data") as daemon:
+            for table, place in places.items():
+                self.assertEqual(daemon.get(place).status, 500, table)
+                self.assertEqual(daemon.request("DELETE", place, headers={"If-Match": '"other"'}).status, 500, table)
+                gone = daemon.request("DELETE", place)
+                self.assertEqual(gone.status, 204, gone.describe())
+                self.assertEqual(daemon.get(place).status, 404, table)
 
     def test_a_flipped_bit_in_the_problem_of_a_job_is_not_shown(self) -> None:
         """Of a failed job and of one that succeeded: answered by its name, listed as damaged, told once and by `check`."""

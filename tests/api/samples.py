@@ -13,6 +13,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+CORRECTION = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}  # of a calibration
+WHITE_NOISE = {"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}  # of a model
+
 
 def noise(samples: int, columns: int = 1, seed: int = 1) -> list[list[float]]:
     """Columns of white noise whose values a decimal of six digits holds exactly."""

@@ -122,6 +122,25 @@ Status run_all(Connection& connection, const std::vector<std::string_view>& stat
   return {};
 }
 
+/// A kind of what is made once and may be removed: what can depend on it, and the statements that remove it.
+struct Removable {
+  std::string_view what;
+  const std::vector<Dependents>& dependents;
+  std::vector<std::string_view> statements;
+};
+
+/// Removes what was found, damaged or not, once nothing depends on it.
+template <class Row>
+Status remove_found(Connection& connection, const Result<Row>& found, const Removable& kind, std::string_view id) {
+  if (!found && !is_damaged(found.error())) {
+    return fail(found.error());
+  }
+  if (Status unused = require_free(connection, kind.dependents, kind.what, id); !unused) {
+    return unused;
+  }
+  return run_all(connection, kind.statements, id);
+}
+
 }  // namespace
 
 Status require_unnamed_recording(Connection& connection, std::string_view id) {
@@ -144,43 +163,20 @@ Status remove_device(Connection& connection, std::string_view id, std::int64_t e
 }
 
 Status remove_study(Connection& connection, std::string_view id) {
-  if (const auto found = study(connection, id); !found && !is_damaged(found.error())) {
-    return fail(found.error());
-  }
-  if (Status unused = require_free(connection, kOfStudy, "study", id); !unused) {
-    return unused;
-  }
-  return run_all(connection, {kRemoveStudy}, id);
+  return remove_found(connection, study(connection, id), {"study", kOfStudy, {kRemoveStudy}}, id);
 }
 
 Status remove_drive(Connection& connection, std::string_view id) {
-  if (const auto found = drive(connection, id); !found && !is_damaged(found.error())) {
-    return fail(found.error());
-  }
-  if (Status unused = require_free(connection, kOfDrive, "drive", id); !unused) {
-    return unused;
-  }
-  return run_all(connection, {kRemoveDrive}, id);
+  return remove_found(connection, drive(connection, id), {"drive", kOfDrive, {kRemoveDrive}}, id);
 }
 
 Status remove_calibration(Connection& connection, std::string_view id) {
-  if (const auto found = calibration(connection, id); !found && !is_damaged(found.error())) {
-    return fail(found.error());
-  }
-  if (Status unused = require_free(connection, kOfCalibration, "calibration", id); !unused) {
-    return unused;
-  }
-  return run_all(connection, {kRemoveCalibration}, id);
+  return remove_found(connection, calibration(connection, id), {"calibration", kOfCalibration, {kRemoveCalibration}},
+                      id);
 }
 
 Status remove_model(Connection& connection, std::string_view id) {
-  if (const auto found = model(connection, id); !found && !is_damaged(found.error())) {
-    return fail(found.error());
-  }
-  if (Status unused = require_free(connection, kOfModel, "model", id); !unused) {
-    return unused;
-  }
-  return run_all(connection, {kRemoveModel, kRemoveOwners}, id);
+  return remove_found(connection, model(connection, id), {"model", kOfModel, {kRemoveModel, kRemoveOwners}}, id);
 }
 
 Status remove_investigation(Connection& connection, std::string_view id) {
