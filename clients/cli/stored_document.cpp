@@ -1,6 +1,7 @@
 #include "clients/cli/stored_document.hpp"
 
 #include "clients/cli/print_answer.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <optional>
 #include <set>
@@ -8,16 +9,11 @@
 namespace driftlab::cli {
 namespace {
 
-std::string text_of(const Json& document, const char* member) {
-  const Json text = document.value(member, Json(nullptr));
-  return text.is_string() ? text.get<std::string>() : "";
-}
-
 /// What it says of one recording; a job may have characterised several.
 Json of_recording(Json document, const std::string& id) {
   Json kept = Json::array();
   for (Json& recording : document["recordings"]) {
-    if (text_of(recording, "id") == id) {
+    if (text_member(recording, "id") == id) {
       kept.push_back(std::move(recording));
     }
   }
@@ -28,12 +24,12 @@ Json of_recording(Json document, const std::string& id) {
 tl::expected<std::string, Failure> name_recordings(const std::string& server, Json& document) {
   std::set<std::string> devices;
   for (Json& recording : document["recordings"]) {
-    const auto stored = fetch_document(server, "/v1/recordings/" + text_of(recording, "id"));
+    const auto stored = fetch_document(server, "/v1/recordings/" + text_member(recording, "id"));
     if (!stored) {
       return tl::unexpected(stored.error());
     }
-    devices.insert(text_of(*stored, "device"));
-    if (const std::string name = text_of(stored->at("file"), "name"); !name.empty()) {
+    devices.insert(text_member(*stored, "device"));
+    if (const std::string name = text_member(stored->at("file"), "name"); !name.empty()) {
       recording["id"] = name;
     }
   }
@@ -41,7 +37,7 @@ tl::expected<std::string, Failure> name_recordings(const std::string& server, Js
     return std::string();
   }
   return fetch_document(server, "/v1/devices/" + *devices.begin()).map([](const Json& device) {
-    return text_of(device, "name");
+    return text_member(device, "name");
   });
 }
 
@@ -73,7 +69,7 @@ tl::expected<StoredDocument, Failure> fetch_result(const std::string& server, co
     if (!newest) {
       return tl::unexpected(newest.error());
     }
-    target = "/v1/jobs/" + text_of(*newest, "job") + "/result";
+    target = "/v1/jobs/" + text_member(*newest, "job") + "/result";
   } else if (!id.starts_with("job_")) {
     return tl::unexpected(
         Failure{{ErrorCode::InvalidArgument,

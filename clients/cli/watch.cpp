@@ -1,6 +1,7 @@
 // `driftlab watch`: what a daemon is doing, a line for each thing that happens.
 #include "clients/cli/remote_job.hpp"
 #include "core/signal/number.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -24,26 +25,21 @@ struct WatchFlags {
   bool json = false;
 };
 
-std::string text_of(const Json& event, const char* member) {
-  const auto found = event.find(member);
-  return found != event.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 /// `2026-11-22T09:30:00.123Z job_... running 45 % fit WN+GM`
 void print_event(const Json& event, bool json) {
   if (json) {
     std::printf("%s\n", to_text(event).c_str());
   } else if (event.contains("state")) {
-    const std::string stage = text_of(event, "stage");
-    const std::string kind = text_of(event, "kind");
+    const std::string stage = text_member(event, "stage");
+    const std::string kind = text_member(event, "kind");
     const double progress =
         event.contains("progress") && event["progress"].is_number() ? event["progress"].get<double>() : 0.0;
-    std::printf("%s  %s%s  %-9s %3.0f %%%s\n", text_of(event, "at").c_str(), text_of(event, "job").c_str(),
-                kind.empty() ? "" : ("  " + kind).c_str(), text_of(event, "state").c_str(),
+    std::printf("%s  %s%s  %-9s %3.0f %%%s\n", text_member(event, "at").c_str(), text_member(event, "job").c_str(),
+                kind.empty() ? "" : ("  " + kind).c_str(), text_member(event, "state").c_str(),
                 std::floor(100.0 * progress), stage.empty() ? "" : ("  " + stage).c_str());
   } else {
-    const std::string verdict = text_of(event, "verdict");
-    std::printf("%s  %s%s\n", text_of(event, "job").c_str(), text_of(event, "href").c_str(),
+    const std::string verdict = text_member(event, "verdict");
+    std::printf("%s  %s%s\n", text_member(event, "job").c_str(), text_member(event, "href").c_str(),
                 verdict.empty() ? "" : ("  " + verdict).c_str());
   }
   std::fflush(stdout);
@@ -102,14 +98,14 @@ Exit watch_job(HttpClient& client, const std::string& job, bool json) {
           if (const auto event = parse_json(data); event && event->is_object()) {
             refusals = 0;
             print_event(*event, json);
-            state = text_of(*event, "state");
+            state = text_member(*event, "state");
           }
           return true;
         },
         &last_id);
     if (state.empty() && reply) {  // it had ended before
       const auto document = parse_json(reply->body);
-      state = document ? text_of(*document, "state") : "";
+      state = document ? text_member(*document, "state") : "";
     }
     if (state == "succeeded") {
       return Exit::Success;
@@ -118,7 +114,7 @@ Exit watch_job(HttpClient& client, const std::string& job, bool json) {
       const auto ended = client.get(target);
       const auto document = ended ? parse_json(ended->body) : Result<Json>(Json::object());
       const bool told = document && document->contains("problem") && (*document)["problem"].is_object();
-      const std::string detail = told ? text_of((*document)["problem"], "detail") : "";
+      const std::string detail = told ? text_member((*document)["problem"], "detail") : "";
       std::string sentence = "The job ";
       sentence.append(job).append(" ended ").append(state).append(detail.empty() ? "." : ": ").append(detail);
       return complain({ErrorCode::Internal, std::move(sentence), {}}, Exit::ServerOrJob);

@@ -31,7 +31,7 @@ Result<std::optional<std::filesystem::path>> find_bag_file(const std::filesystem
   }
   if (parts.size() > 1) {
     std::sort(parts.begin(), parts.end());
-    NameList names;
+    NameList names(kMostNames);
     for (const std::filesystem::path& part : parts) {
       names.add(quoted_name(part.filename().string()));
     }

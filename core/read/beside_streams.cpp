@@ -113,7 +113,7 @@ Status BesideStreams::deliver_one(ColumnSink& sink, const Stream& stream, std::s
 
 Status BesideStreams::deliver(ColumnSink& sink, std::size_t column, std::size_t rows, std::uint64_t origin,
                               double ticks_per_s) const {
-  NameList named;
+  NameList named(kMostNames);
   for (const Stream& stream : streams_) {
     if (stream.in_table()) {
       named.add(quoted_name(stream.name) + " (" + stream.heading + ", " + with_count(stream.stamps.size(), "row") +

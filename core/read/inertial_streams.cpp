@@ -15,7 +15,6 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostAheadBytes = std::size_t{1} << 20;
 constexpr std::size_t kBatch = 8192;
 constexpr std::size_t kLongestName = 80;
-constexpr std::size_t kMostNames = 12;
 constexpr std::size_t kMostInTable = 16;
 constexpr std::uint64_t kMostTimesSlower = 20;
 
@@ -50,18 +49,6 @@ std::string quoted_name(std::string_view name) {
     shown += c >= ' ' && c <= '~' ? c : '?';
   }
   return shown + (name.size() > kLongestName ? "...'" : "'");
-}
-
-void NameList::add(const std::string& entry) {
-  ++count_;
-  if (shown_ < kMostNames) {
-    ++shown_;
-    text_ += (text_.empty() ? "" : ", ") + entry;
-  }
-}
-
-std::string NameList::text() const {
-  return count_ == shown_ ? text_ : text_ + " and " + std::to_string(count_ - shown_) + " more";
 }
 
 Result<std::size_t> InertialStreams::add(std::string name, Inertial holds, ColumnNames columns) {
@@ -261,8 +248,8 @@ void InertialStreams::note_others() {
   const auto text_of = [](const Stream& stream) {
     return "(" + std::string(contents_of(stream.holds)) + ", " + with_count(stream.samples, "sample") + ")";
   };
-  NameList others;
-  NameList left_out;
+  NameList others(kMostNames);
+  NameList left_out(kMostNames);
   for (const Stream& stream : streams_) {
     if (!stream.heading.empty()) {
       others.add(stream.heading + " is " + quoted_name(stream.name) + " " + text_of(stream));

@@ -20,6 +20,7 @@
 /// streams that run ahead of the chosen one.
 #include "core/read/beside_streams.hpp"
 #include "core/read/format.hpp"
+#include "core/signal/name_list.hpp"
 
 #include <cstdint>
 #include <span>
@@ -39,18 +40,8 @@ enum class Inertial { Accelerometer, Gyroscope, Both };
 /// `name` from a file, fit for a sentence: printable ASCII, at most 80 characters, in quotes.
 [[nodiscard]] std::string quoted_name(std::string_view name);
 
-/// A list for a sentence that does not grow with the file: "'a', 'b' and 12 more".
-class NameList {
- public:
-  void add(const std::string& entry);
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-  [[nodiscard]] std::string text() const;
-
- private:
-  std::string text_;
-  std::size_t count_ = 0;
-  std::size_t shown_ = 0;
-};
+/// Names of a file in one sentence.
+inline constexpr std::size_t kMostNames = 12;
 
 class InertialStreams {
  public:

@@ -136,7 +136,7 @@ Status RosTopics::take(std::size_t index, std::string_view message, std::uint64_
 }
 
 Status RosTopics::finish(const std::string& container) {
-  NameList others;
+  NameList others(kMostNames);
   for (const Topic& topic : topics_) {
     if (!topic.encoding) {
       others.add(quoted_name(topic.name) + " (" + quoted_name(topic.type) + ")");

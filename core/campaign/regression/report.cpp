@@ -7,6 +7,7 @@
 #include "core/campaign/regression/request_checks.hpp"
 #include "core/campaign/regression/scale_check.hpp"
 #include "core/campaign/regression/time_base.hpp"
+#include "core/signal/name_list.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -146,15 +147,11 @@ void note_recordings(const Request& request, Report& report) {
     }
   }
   for (const auto& [note, ids] : whose) {
-    std::string named;
-    std::size_t count = 0;
-    for (auto id = ids.begin(); id != ids.end() && count < kNamed; ++id, ++count) {
-      named += (named.empty() ? "" : ", ") + *id;
+    NameList named(kNamed);
+    for (const std::string& id : ids) {
+      named.add(id);
     }
-    if (ids.size() > count) {
-      named += " and " + std::to_string(ids.size() - count) + " more";
-    }
-    report.notes.push_back(named + ": " + note);
+    report.notes.push_back(named.text() + ": " + note);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/search/thresholds.hpp"
 #include "core/process/distributions.hpp"
+#include "core/signal/name_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -110,13 +111,11 @@ void list_unexplained(const std::vector<ChannelGroup>& groups, Report& report) {
     left.sentence = "The extended model does not describe " + group.column + ": ";
     // Checks named in a sentence; the rest is counted. Chosen for who reads it.
     constexpr std::size_t kNamed = 4;
-    for (std::size_t i = 0; i < std::min(kNamed, titles.size()); ++i) {
-      left.sentence.append(i == 0 ? "" : ", ").append(titles[i]);
+    NameList named(kNamed);
+    for (const std::string& title : titles) {
+      named.add(title);
     }
-    if (titles.size() > kNamed) {
-      left.sentence.append(" and ").append(std::to_string(titles.size() - kNamed)).append(" more");
-    }
-    left.sentence.append(titles.size() == 1 ? " still disagrees" : " still disagree");
+    left.sentence.append(named.text()).append(titles.size() == 1 ? " still disagrees" : " still disagree");
     left.sentence.append(", and no cause of the list explains what is left.");
     report.unexplained.push_back(std::move(left));
   }

@@ -1,8 +1,10 @@
 #include "schema/json/report/html.hpp"
 
+#include "core/signal/significant.hpp"
 #include "schema/figure/drawing.hpp"
 #include "schema/figure/paper.hpp"
 #include "schema/figure/printed_names.hpp"
+#include "schema/json/figure_values.hpp"
 #include "schema/json/figures.hpp"
 
 namespace driftlab::page {
@@ -68,9 +70,16 @@ std::string figures_html(const Json& document) {
 
 std::string mark_of(const std::string& level) { return level == "fine" ? "✓" : level == "wrong" ? "✗" : "△"; }
 
-std::string text_of(const Json& object, const char* member) {
-  const Json value = object.value(member, Json(nullptr));
-  return value.is_string() ? value.get<std::string>() : "";
+std::string with_interval(double value, const Json& ci95) {
+  const bool stated = ci95.is_array() && ci95.size() == 2;
+  const auto low = stated ? value_of(ci95[0]) : std::nullopt;
+  const auto high = stated ? value_of(ci95[1]) : std::nullopt;
+  std::string text = significant(value, low, high);
+  if (low || high) {
+    text +=
+        " [" + (low ? significant(*low, low, high) : "—") + ", " + (high ? significant(*high, low, high) : "—") + "]";
+  }
+  return text;
 }
 
 std::string row_html(const std::vector<std::string>& cells, const char* tag) {

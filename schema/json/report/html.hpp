@@ -35,8 +35,9 @@ namespace driftlab::page {
 [[nodiscard]] std::string table_html(const std::string& heading, const std::vector<std::string>& columns,
                                      const std::string& rows);
 
-/// A member that is a text; empty where it is null or absent.
-[[nodiscard]] std::string text_of(const Json& object, const char* member);
+/// A number of a document and its interval `ci95`, each with the digits that the interval lets stand: `1.04 [1.02,
+/// 1.05]`, a bound that is null a dash, and the number alone where there is no interval.
+[[nodiscard]] std::string with_interval(double value, const Json& ci95);
 
 /// Members of a list, joined by commas.
 [[nodiscard]] std::string with_commas(const Json& words);

@@ -4,6 +4,7 @@
 #include "schema/json/figure_values.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
+#include "schema/json/stored_member.hpp"
 
 namespace driftlab::page {
 namespace {
@@ -19,14 +20,14 @@ std::string parameters_of(const Json& params) {
 }
 
 /// A cause as people write it.
-std::string cause_name(const Json& named) { return replaced(text_of(named, "cause"), "_", " "); }
+std::string cause_name(const Json& named) { return replaced(text_member(named, "cause"), "_", " "); }
 
 std::string finding_html(const Json& finding) {
-  const auto status = text_of(finding, "status");
+  const auto status = text_member(finding, "status");
   const std::string others = replaced(with_commas(finding.value("alternatives", Json::array())), "_", " ");
   std::string text = "<section>\n<h2>" + html(finding.value("title", cause_name(finding))) + "</h2>\n<p>" +
-                     html(printed_unit(text_of(finding, "explanation"))) + "</p>\n";
-  if (const std::string equation = text_of(finding, "equation"); !equation.empty()) {
+                     html(printed_unit(text_member(finding, "explanation"))) + "</p>\n";
+  if (const std::string equation = text_member(finding, "equation"); !equation.empty()) {
     text += "<p class=\"equation\">" + html(equation) + "</p>\n";
   }
   text += "<p class=\"meta\">" + html(cause_name(finding)) + ", " +
@@ -63,7 +64,7 @@ std::string checks_html(const Json& checks) {
         return p.is_number() ? figure::tick_text(p.get<double>()) : std::string("not made");
       };
       const Json end = check.value("end", Json(nullptr));
-      rows += row_html({text_of(check, "channel"), text_of(check, "recording"), text_of(check, "title"),
+      rows += row_html({text_member(check, "channel"), text_member(check, "recording"), text_member(check, "title"),
                         chance("p_adjusted"), chance("p_after_adjusted"),
                         after             ? "still fails"
                         : end.is_string() ? "passes: " + end.get<std::string>()
@@ -82,8 +83,8 @@ std::string extended_html(const Json& model) {
   std::string rows;
   const auto add = [&rows](const std::string& where, const Json& processes) {
     for (const Json& process : processes) {
-      rows += row_html(
-          {where, process_name(text_of(process, "process")), parameters_of(process.value("params", Json::object()))});
+      rows += row_html({where, process_name(text_member(process, "process")),
+                        parameters_of(process.value("params", Json::object()))});
     }
   };
   const Json channels = model.value("channels", Json::object());
@@ -104,7 +105,7 @@ std::string extended_html(const Json& model) {
 
 std::string investigation_html(const Json& document) {
   const Json summary = document.value("summary", Json::object());
-  std::string text = verdict_html(mark_of(text_of(summary, "level")) + " " + text_of(summary, "verdict")) +
+  std::string text = verdict_html(mark_of(text_member(summary, "level")) + " " + text_member(summary, "verdict")) +
                      list_html(summary.value("details", Json::array()));
   if (document.at("findings").empty()) {
     text += "<p>Nothing was found: what was measured agrees with what the baseline simulates.</p>\n";
@@ -114,19 +115,19 @@ std::string investigation_html(const Json& document) {
   }
   Json sentences = Json::array();
   for (const Json& one : document.value("unexplained", Json::array())) {
-    sentences.push_back(text_of(one, "explanation"));
+    sentences.push_back(text_member(one, "explanation"));
   }
   text += sentences.empty() ? "" : "<h2>Unexplained</h2>\n" + list_html(sentences);
   Json profiles = Json::array();
   for (const Json& one : document.value("unnamed", Json::array())) {
-    profiles.push_back(text_of(one, "explanation"));
+    profiles.push_back(text_member(one, "explanation"));
   }
   text += profiles.empty() ? "" : "<h2>In the extended model without a name</h2>\n" + list_html(profiles);
   text += figures_html(document) + checks_html(document.value("checks", Json::array())) +
           extended_html(document.value("extended_model", Json::object()));
   std::string unseen;
   for (const Json& one : document.value("not_examined", Json::array())) {
-    unseen += row_html({text_of(one, "channel"), cause_name(one), text_of(one, "needs")});
+    unseen += row_html({text_member(one, "channel"), cause_name(one), text_member(one, "needs")});
   }
   return text + table_html("Not examined", {"channel", "cause", "would need"}, unseen) +
          list_html(document.value("notes", Json::array()));

@@ -1,8 +1,8 @@
 /// The report of parameter tables: verdict, figures and every number with its interval.
-#include "core/signal/significant.hpp"
-#include "schema/json/figure_values.hpp"
+#include "schema/figure/printed_names.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
+#include "schema/json/stored_member.hpp"
 #include "schema/json/table_figures.hpp"
 
 #include <string>
@@ -16,36 +16,26 @@ std::string cell_text(const Json& cell) {
   if (!cell.is_object() || !cell.value("value", Json(nullptr)).is_number()) {
     return "—";
   }
-  const double value = cell.at("value").get<double>();
-  const Json ci95 = cell.value("ci95", Json(nullptr));
-  const bool stated = ci95.is_array() && ci95.size() == 2;
-  const auto low = stated ? value_of(ci95[0]) : std::nullopt;
-  const auto high = stated ? value_of(ci95[1]) : std::nullopt;
-  std::string text = significant(value, low, high);
-  if (low || high) {
-    text +=
-        " [" + (low ? significant(*low, low, high) : "—") + ", " + (high ? significant(*high, low, high) : "—") + "]";
-  }
-  return text;
+  return with_interval(cell.at("value").get<double>(), cell.value("ci95", Json(nullptr)));
 }
 
 std::string one_table(const Json& table) {
   std::vector<std::string> columns{"condition"};
   for (const Json& column : table.at("columns")) {
-    const std::string unit = printed_unit(text_of(column, "unit"));
+    const std::string unit = printed_unit(text_member(column, "unit"));
     columns.push_back(column_name(column.at("key").get<std::string>()) + (unit.empty() ? "" : ", " + unit));
   }
   std::string rows;
   for (const Json& row : table.at("rows")) {
-    std::vector<std::string> cells{text_of(row, "label")};
+    std::vector<std::string> cells{text_member(row, "label")};
     for (const Json& column : table.at("columns")) {
       cells.push_back(cell_text(row.at("values").value(column.at("key").get<std::string>(), Json(nullptr))));
     }
     rows += row_html(cells);
   }
   const std::string by = method_of_table(table);
-  return table_html(text_of(table, "sensor") + " " + text_of(table, "axis") + (by.empty() ? "" : ", " + by), columns,
-                    rows);
+  return table_html(text_member(table, "sensor") + " " + text_member(table, "axis") + (by.empty() ? "" : ", " + by),
+                    columns, rows);
 }
 
 }  // namespace
@@ -60,7 +50,7 @@ std::string parameter_tables_html(const Json& document) {
   } else {
     tables = one_table(document);
   }
-  return (summary.is_object() ? verdict_html(text_of(summary, "verdict")) : "") + tables + figures_html(document);
+  return (summary.is_object() ? verdict_html(text_member(summary, "verdict")) : "") + tables + figures_html(document);
 }
 
 }  // namespace driftlab::page

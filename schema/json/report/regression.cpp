@@ -5,6 +5,7 @@
 #include "schema/json/regression_figures.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <array>
 #include <cstdint>
@@ -29,12 +30,12 @@ std::string tests_html(const Json& units) {
         continue;
       }
       const Json tau = test.value("tau_s", Json(nullptr));
-      rows +=
-          row_html({unit_name(unit),
-                    tau.is_number() ? figure::tick_text(tau.get<double>()) + " s" : column_name(text_of(test, "name")),
-                    percent(test.at("ratio").get<double>()),
-                    percent(test.at("ci")[0].get<double>()) + " to " + percent(test.at("ci")[1].get<double>()),
-                    percent(test.at("margin").get<double>()), verdict});
+      rows += row_html(
+          {unit_name(unit),
+           tau.is_number() ? figure::tick_text(tau.get<double>()) + " s" : column_name(text_member(test, "name")),
+           percent(test.at("ratio").get<double>()),
+           percent(test.at("ci")[0].get<double>()) + " to " + percent(test.at("ci")[1].get<double>()),
+           percent(test.at("margin").get<double>()), verdict});
     }
   }
   return table_html("Tests", {"axis", "averaging time", "change", "interval, all tests at once", "margin", ""}, rows);
@@ -44,8 +45,8 @@ std::string arms_html(const Json& arms) {
   std::string rows;
   for (const char* const arm : {"baseline", "candidate"}) {
     for (const Json& session : arms.at(arm).at("sessions")) {
-      const std::string label = text_of(arms.at(arm), "label");
-      rows += row_html({arm + (label.empty() ? "" : " (" + label + ")"), text_of(session, "session"),
+      const std::string label = text_member(arms.at(arm), "label");
+      rows += row_html({arm + (label.empty() ? "" : " (" + label + ")"), text_member(session, "session"),
                         with_commas(session.value("recordings", Json::array())),
                         figure::tick_text(session.at("duration_s").get<double>()) + " s"});
     }
@@ -57,8 +58,8 @@ std::string arms_html(const Json& arms) {
 std::string comparisons_html(const Json& findings) {
   std::string rows;
   for (const Json& finding : findings) {
-    rows += row_html(
-        {replaced(text_of(finding, "check"), "_", " "), text_of(finding, "verdict"), text_of(finding, "sentence")});
+    rows += row_html({replaced(text_member(finding, "check"), "_", " "), text_member(finding, "verdict"),
+                      text_member(finding, "sentence")});
   }
   return table_html("Recordings compared", {"check", "verdict", ""}, rows);
 }
@@ -69,7 +70,7 @@ std::string regression_html(const Json& document) {
   const Json& summary = document.at("summary");
   const Json& settings = document.at("settings");
   const Json& look = document.at("look");
-  return verdict_html(mark_of(text_of(summary, "level")) + " " + text_of(summary, "verdict")) +
+  return verdict_html(mark_of(text_member(summary, "level")) + " " + text_member(summary, "verdict")) +
          list_html(summary.at("details")) + figures_html(document) + tests_html(document.at("units")) +
          comparisons_html(document.at("findings")) + arms_html(document.at("arms")) + "<p class=\"meta\">" +
          html("Look " + std::to_string(look.at("number").get<int>()) + " of " +
