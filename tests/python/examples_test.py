@@ -45,11 +45,16 @@ class Examples(unittest.TestCase):
         for part in ("WN", "not_a_number", "absent.csv", "100% ", "bytes"):
             self.assertIn(part, names["printed"])
         self.assertIn("<svg", Path("allan.svg").read_text("utf-8"))
+        self.assertIn("gyroscope_noise_density: ", names["printed"])
+        self.assertIn(names["run"]["verdict"], ("pass", "inconclusive"), "nothing was changed")
+        self.assertIn("<h1>phone-07</h1>", Path("gate.html").read_text("utf-8"))
 
     def test_the_readme_of_the_package_runs(self) -> None:
         from driftlab import local
         local.simulate("my_gyro.csv", duration_s=100)
-        self.run_blocks(REPOSITORY / "clients/python/README.md")
+        local.simulate("my_gyro_after.csv", duration_s=100, seed=2)
+        names = self.run_blocks(REPOSITORY / "clients/python/README.md")
+        self.assertIn(names["gate"]["verdict"], ("pass", "inconclusive"), "nothing was changed")
 
     def test_every_script_runs(self) -> None:
         scripts = sorted(EXAMPLES.glob("*.py"))
