@@ -5,6 +5,10 @@
 #include "core/signal/significant.hpp"
 #include "core/signal/unit.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace driftlab::regression {
 namespace {
 
@@ -50,14 +54,35 @@ std::string text_of(double value, bool gyroscope) {
   return significant(unit ? unit->from_si(value) : value) + (gyroscope ? " deg/s" : " mg");
 }
 
+/// A sentence where gravity lies along other axes than before, which no bias does.
+std::string gravity_moved(const FiguresByUnit& figures) {
+  constexpr double kOtherwise = 0.2 * kStandardGravity;
+  const auto moved = [](const auto& one) { return one.second.gyroscope ? 0.0 : std::abs(one.second.difference()); };
+  const auto most = std::max_element(figures.begin(), figures.end(),
+                                     [&](const auto& a, const auto& b) { return moved(a) < moved(b); });
+  if (most == figures.end() || moved(*most) < kOtherwise) {
+    return "";
+  }
+  const double difference = most->second.difference();
+  return most->first + ": the mean moved by " + (difference > 0.0 ? "+" : "") + text_of(difference, false) +
+         "; the device lay otherwise, or its axes are swapped, turned or in another unit.";
+}
+
 }  // namespace
 
 EventCheck check_bias(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
                       const BiasMargins& margins, double level) {
   const ShiftWords words{
       .check = "bias", .figure = "bias", .without = "no axis was recorded at rest in both arms", .text = text_of};
-  return check_shift(arm_figures(baseline, candidate, means_of), candidate, {margins.gyroscope, margins.accelerometer},
-                     words, level);
+  const FiguresByUnit figures = arm_figures(baseline, candidate, means_of);
+  EventCheck check = check_shift(figures, candidate, {margins.gyroscope, margins.accelerometer}, words, level);
+  if (check.verdict != CheckVerdict::Fail && !(margins.accelerometer > 0.0)) {
+    if (std::string sentence = gravity_moved(figures); !sentence.empty()) {
+      check.verdict = CheckVerdict::Note;
+      check.sentence = std::move(sentence);
+    }
+  }
+  return check;
 }
 
 }  // namespace driftlab::regression

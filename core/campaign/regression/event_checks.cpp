@@ -2,6 +2,7 @@
 
 #include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/gross_errors.hpp"
+#include "core/campaign/regression/held_share.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -59,14 +60,23 @@ struct Excess {
   std::vector<std::string> sessions;
 };
 
-/// Units in which a candidate session's figure is more than `allowed` permits after the baseline's largest; the worst
+/// The same figure in both arms, or one for each.
+struct Figures {
+  Figures(Figure both) : baseline(both), candidate(std::move(both)) {}  // NOLINT(google-explicit-constructor)
+  Figures(Figure before, Figure now) : baseline(std::move(before)), candidate(std::move(now)) {}
+
+  Figure baseline;
+  Figure candidate;
+};
+
+/// Units in which a candidate session's figure is more than `exceeds` permits after the baseline's largest; the worst
 /// first. `sessions` of it: all that show it.
 std::vector<Excess> exceeding(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
-                              const Figure& figure, const std::function<bool(double, double)>& exceeds) {
-  const ByUnit before = largest_of(baseline, figure);
+                              const Figures& figures, const std::function<bool(double, double)>& exceeds) {
+  const ByUnit before = largest_of(baseline, figures.baseline);
   std::map<std::string, Excess> found;
   for (const PowerUp& session : candidate) {
-    for (const auto& [name, value] : largest_of(session, figure)) {
+    for (const auto& [name, value] : largest_of(session, figures.candidate)) {
       const auto known = before.find(name);
       if (known == before.end() || !exceeds(value, known->second)) {
         continue;
@@ -113,6 +123,34 @@ EventCheck check_share(const char* name, const char* words, const std::vector<Po
         return written("%s: %.2g %% of the samples are %s, in the baseline at most %.2g %%.", excess.unit.c_str(),
                        100.0 * excess.candidate, words, 100.0 * excess.baseline);
       });
+}
+
+/// Mean square of the differences of neighbours [channel unit^2]: four times the first wavelet variance.
+double mean_square_of(const ComparedChannel& channel) {
+  const ReportedHaar& haar = channel.result.haar;
+  return haar.scale.empty() || haar.scale.front() != 2 ? 0.0 : 4.0 * haar.variance.front();
+}
+
+/// Samples held over from the one before, without those that rounding makes equal (held_share.hpp).
+EventCheck check_repeated(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate, double limit) {
+  const auto held = [](double HeldShare::* bound) -> Figure {
+    return [bound](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
+      const std::size_t samples = std::max<std::size_t>(channel.facts.samples, 1);
+      const double equal = static_cast<double>(channel.facts.repeated) / static_cast<double>(samples);
+      const double mean_square = mean_square_of(channel);
+      const double step = mean_square > 0.0 ? channel.facts.resolution : 0.0;
+      return held_share(equal, samples, mean_square, step).*bound;
+    };
+  };
+  return told("repeated",
+              exceeding(baseline, candidate, {held(&HeldShare::high), held(&HeldShare::low)},
+                        [limit](double now, double before) { return now > before + limit; }),
+              [](const Excess& excess) {
+                return written(
+                    "%s: at least %.2g %% of the samples are held over from the one before, in the baseline "
+                    "at most %.2g %%.",
+                    excess.unit.c_str(), 100.0 * excess.candidate, 100.0 * excess.baseline);
+              });
 }
 
 EventCheck check_saturation(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
@@ -171,8 +209,15 @@ EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vec
     return written("%s: the step of the values went from %.3g to %.3g (SI)", excess.unit.c_str(), excess.baseline,
                    excess.candidate);
   };
-  const std::vector<Excess> coarser = exceeding(
-      baseline, candidate, step, [limit](double now, double before) { return before > 0.0 && now > limit * before; });
+  // Readings written as floats have the last digit of a small one for a step, which moves with the bias.
+  constexpr double kSeen = 0.1;  // of the noise: a step below that adds less than a thousandth to its variance
+  const Figure seen_step = [&](const ComparedRecording& recording, const ComparedChannel& channel) {
+    const double noise = std::sqrt(0.5 * mean_square_of(channel));
+    return channel.facts.resolution > kSeen * noise ? step(recording, channel) : 0.0;
+  };
+  const std::vector<Excess> coarser =
+      exceeding(baseline, candidate, {step, seen_step},
+                [limit](double now, double before) { return before > 0.0 && now > limit * before; });
   EventCheck check = told("resolution", coarser,
                           [&](const Excess& excess) { return sentence(excess) + full_scale_hint(coarser) + "."; });
   if (check.verdict == CheckVerdict::Ok) {
@@ -328,17 +373,16 @@ std::string unit_name(const ComparedRecording& recording, const ReportedChannel&
 
 std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
                                      double event_alpha, const EventLimits& limits) {
-  return {
-      check_saturation(baseline, candidate),
-      check_share("missing", "missing", baseline, candidate, &ChannelFacts::missing, limits.missing),
-      check_share("frozen", "of a sensor that gives one value only", baseline, candidate, &ChannelFacts::frozen,
-                  limits.missing),
-      check_share("repeated", "equal to the one before", baseline, candidate, &ChannelFacts::repeated, limits.missing),
-      check_jitter(baseline, candidate, limits),
-      check_resolution(baseline, candidate, limits.resolution),
-      check_contamination(baseline, candidate, limits.contamination, event_alpha),
-      check_findings(baseline, candidate, limits.findings),
-      check_rate(baseline, candidate, limits.rate)};
+  return {check_saturation(baseline, candidate),
+          check_share("missing", "missing", baseline, candidate, &ChannelFacts::missing, limits.missing),
+          check_share("frozen", "of a sensor that gives one value only", baseline, candidate, &ChannelFacts::frozen,
+                      limits.missing),
+          check_repeated(baseline, candidate, limits.missing),
+          check_jitter(baseline, candidate, limits),
+          check_resolution(baseline, candidate, limits.resolution),
+          check_contamination(baseline, candidate, limits.contamination, event_alpha),
+          check_findings(baseline, candidate, limits.findings),
+          check_rate(baseline, candidate, limits.rate)};
 }
 
 }  // namespace driftlab::regression

@@ -28,6 +28,7 @@ void ComparedRecording::time_by_channels() {
 void ComparedRecording::tell(const Quality& quality) {
   declared_hz = stated_rate_hz(quality.measured_rate_hz, quality.clock_ratio.value_or(0.0), rate_hz);
   jitter_s = quality.jitter_s;
+  stamped = quality.measured_rate_hz > 0.0;
   samples = quality.samples;
   missing = quality.missing;
   notes = quality.notes;

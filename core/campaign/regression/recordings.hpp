@@ -65,6 +65,7 @@ struct ComparedRecording {
   double rate_hz = 0.0;               ///< 1/dt of the analysed samples
   std::optional<double> declared_hz;  ///< as stated
   double jitter_s = 0.0;
+  bool stamped = false;  ///< its samples have time stamps
   std::size_t samples = 0;
   std::size_t missing = 0;  ///< samples that the time column says are missing
   std::optional<double> temperature_degc;

@@ -122,6 +122,13 @@ Status add_units(const ComparedSessions& sessions, const RunControl& control, De
   return control.stop.stop_requested() ? Status(cancelled()) : Status{};
 }
 
+bool all_stamped(const std::vector<PowerUp>& sessions) {
+  return std::all_of(sessions.begin(), sessions.end(), [](const PowerUp& session) {
+    return std::all_of(session.recordings.begin(), session.recordings.end(),
+                       [](const ComparedRecording* recording) { return recording->stamped; });
+  });
+}
+
 /// What is no level of noise. Gross errors, and bias and scale factor where they are tested, share the level of events.
 void check_facts(const ComparedSessions& sessions, Report& report) {
   const Settings& settings = report.settings;
@@ -132,7 +139,8 @@ void check_facts(const ComparedSessions& sessions, Report& report) {
   report.checks = check_events(before, candidate, level, settings.limits);
   report.checks.push_back(check_bias(before, candidate, settings.bias, level));
   report.checks.push_back(check_scale_factor(before, candidate, settings.scale_factor, level));
-  report.checks.push_back(check_time_base(report.units, settings.test.through_s));
+  report.checks.push_back(
+      check_time_base(report.units, settings.test.through_s, all_stamped(before) && all_stamped(candidate)));
 }
 
 /// What must be known of the files of both arms, each sentence once with the recordings that it is of.

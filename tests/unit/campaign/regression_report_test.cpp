@@ -272,27 +272,112 @@ TEST(RegressionReport, ACauseFailsInTwoSessionsIfTheBaselineWasInvestigatedToo) 
   EXPECT_EQ(found(3, false), CheckVerdict::Note) << "nobody knows whether the baseline has it";
 }
 
-TEST(RegressionReport, AClockThatIsOffIsANoteAndNotAFailure) {
+/// The same on three axes, of which the candidate's variances are `factor` times as large from the scale `first` on.
+Request on_three_axes(double factor, std::size_t first = 0) {
   Request made = request(0.05);
   for (Recordings* arm : {&made.baseline, &made.candidate}) {
     for (ComparedRecording& recording : arm->recordings) {
-      const ComparedChannel first = recording.channels.front();
+      const ComparedChannel z = recording.channels.front();
       for (const char* const axis : {"x", "y"}) {
-        recording.channels.push_back(first);
+        recording.channels.push_back(z);
         recording.channels.back().result.axis = axis;
       }
       for (ComparedChannel& channel : recording.channels) {
-        for (double& variance : channel.result.haar.variance) {
-          variance *= arm == &made.candidate ? 1.12 : 1.0;  // a clock 12 % fast
+        std::vector<double>& variance = channel.result.haar.variance;
+        for (std::size_t j = first; j < variance.size(); ++j) {
+          variance[j] *= arm == &made.candidate ? factor : 1.0;
         }
       }
     }
   }
-  const auto report = run_regression(made);
+  return made;
+}
+
+TEST(RegressionReport, AClockThatIsOffIsANoteAndNotAFailure) {
+  const auto report = run_regression(on_three_axes(1.12));  // a clock 12 % fast
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(check(*report, "time_base").verdict, CheckVerdict::Note);
   EXPECT_NE(check(*report, "time_base").sentence.find("% fast would"), std::string::npos);
   EXPECT_NE(report->verdict, Verdict::Fail) << report->summary.verdict;
+}
+
+TEST(RegressionReport, OnlyWhatAClockDoesIsCalledAClock) {
+  const auto verdict = [](const Request& made) { return check(*run_regression(made), "time_base").verdict; };
+  EXPECT_EQ(verdict(on_three_axes(1.12, 3)), CheckVerdict::Ok) << "the short scales did not move";
+  EXPECT_EQ(verdict(on_three_axes(1.69)), CheckVerdict::Ok) << "no clock is 69 % fast";
+  Request stamped = on_three_axes(1.12);
+  Quality quality;
+  quality.measured_rate_hz = 25.0;
+  quality.clock_ratio = 1.0;
+  for (Recordings* arm : {&stamped.baseline, &stamped.candidate}) {
+    for (ComparedRecording& recording : arm->recordings) {
+      recording.tell(quality);
+    }
+  }
+  EXPECT_EQ(verdict(stamped), CheckVerdict::Ok) << "the clock is known";
+}
+
+/// Accelerometer readings on a lattice: what rounding makes equal is no lost sample, and moves with the noise.
+TEST(RegressionReport, EqualNeighboursThatRoundingMakesAreNoFailure) {
+  Random random(61, 0);
+  const auto rounded = [&](const std::string& id, double sigma, double held) {
+    std::vector<double> x(15000);
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double value = std::round(sigma * random.normal() + 0.2);
+      x[i] = i > 0 && random.uniform() < held ? x[i - 1] : value;
+      equal += i > 0 && x[i] == x[i - 1] ? 1 : 0;
+    }
+    ComparedChannel channel = channel_of(x, 0.04, "specific_force", "z", "m/s^2");
+    channel.facts.repeated = equal;
+    channel.facts.resolution = 1.0;
+    return recording_of(id, {channel});
+  };
+  Request unchanged;
+  unchanged.device = "imu-07";
+  unchanged.baseline = {"firmware=1.0", {rounded("a", 0.80, 0.0), rounded("b", 0.83, 0.0), rounded("c", 0.78, 0.0)}};
+  unchanged.candidate = {"firmware=1.1", {rounded("d", 0.74, 0.0), rounded("e", 0.76, 0.0), rounded("f", 0.79, 0.0)}};
+  const auto quiet = run_regression(unchanged);
+  ASSERT_TRUE(quiet) << quiet.error().message;
+  EXPECT_EQ(check(*quiet, "repeated").verdict, CheckVerdict::Ok) << check(*quiet, "repeated").sentence;
+  Request made;
+  made.device = "imu-07";
+  made.baseline = {"firmware=1.0", {rounded("a", 3.0, 0.0), rounded("b", 3.0, 0.0)}};
+  made.candidate = {"firmware=1.1", {rounded("c", 3.0, 0.2), rounded("d", 3.0, 0.2)}};
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(check(*report, "repeated").verdict, CheckVerdict::Fail);
+  EXPECT_NE(check(*report, "repeated").sentence.find("are held over from the one before"), std::string::npos);
+}
+
+TEST(RegressionReport, AStepThatTheNoiseHidesIsNotCompared) {
+  Request made = request(0.05);
+  made.baseline.recordings[0].channels[0].facts.resolution = 1e-7;
+  made.candidate.recordings[0].channels[0].facts.resolution = 1e-5;  // digits of a float beside a noise of 0.3 deg/s
+  EXPECT_EQ(check(*run_regression(made), "resolution").verdict, CheckVerdict::Ok);
+  made.candidate.recordings[0].channels[0].facts.resolution = 0.1;
+  EXPECT_EQ(check(*run_regression(made), "resolution").verdict, CheckVerdict::Fail);
+}
+
+TEST(RegressionReport, GravityAlongAnotherAxisIsTold) {
+  Request made = request(0.05);
+  for (Recordings* arm : {&made.baseline, &made.candidate}) {
+    for (ComparedRecording& recording : arm->recordings) {
+      ComparedChannel up = recording.channels.front();
+      up.result.quantity = "specific_force";
+      up.result.unit = "m/s^2";
+      up.facts.mean = arm == &made.baseline ? 9.8 : 0.1;
+      recording.channels.push_back(up);
+      recording.channels.front().facts.mean = arm == &made.baseline ? 0.1 : 0.3;
+    }
+  }
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(check(*report, "bias").verdict, CheckVerdict::Note);
+  EXPECT_TRUE(check(*report, "bias").sentence.starts_with("accelerometer z: the mean moved by -"))
+      << check(*report, "bias").sentence;
+  EXPECT_NE(std::find(report->summary.details.begin(), report->summary.details.end(), check(*report, "bias").sentence),
+            report->summary.details.end());
 }
 
 /// Noise with heavy tails as a characterisation would store it: what the robust estimator sees is 30 % less deviation.
