@@ -55,12 +55,8 @@ FIRST_ROW = {"A": 0, "B": 303000, "C": 606000, "D": 909000}
 SESSIONS = "123"
 PAIRS = list(itertools.permutations(SESSIONS, 2))
 
-# As the specification's figures were measured: one look, and the noise alone. A share of missing, frozen or repeated samples fails by
-# default where it grows by 0.5 %; on a lattice as coarse as the noise, that of the accelerometers, a sample equals the one before by chance
-# in a quarter to two fifths of the cases, and that share moves by more from session to session.
+# As the specification's figures were measured: one look, and the noise alone, whatever samples are missing.
 NOISE_ALONE = {"looks": 1, "event_limits": {"missing": 100}}
-# The step that is found in floats is that of their last digit, which depends on how near to zero a reading came.
-NOISE_OF_FLOATS = {"looks": 1, "event_limits": {"missing": 100, "resolution": 100}}
 
 
 class Piece(NamedTuple):
@@ -250,20 +246,20 @@ class Recorded(unittest.TestCase):
                 verdicts.append(document["verdict"])
             print(f"gyro x times {factor:g}, {plan}: {len(verdicts)} runs, {shares(verdicts)} %")
 
-    def test_by_default_chance_repeats_are_all_that_fails(self) -> None:
-        """Known and open: samples of the accelerometers equal the one before by chance, for their noise is about one step of the values;
-        how many do moves with the session, and by more than the 0.5 % that the check `repeated` allows."""
+    def test_by_default_nothing_fails(self) -> None:
+        """The noise of the accelerometers is about one step of their values: 24 to 38 % of the samples equal the one before by chance, and
+        that share moves with the session. The check `repeated` failed 25 of all 30 runs by it."""
         verdicts = []
         for run, document in self.workshop.all(UNCHANGED["1 v 1"][::3], {}):
-            self.assertEqual(beyond(document), set(), run)
-            self.assertLessEqual(failed_checks(document), {"repeated"}, run)
+            self.assertEqual((beyond(document), failed_checks(document)), (set(), set()), run)
             verdicts.append(document["verdict"])
+        self.assertNotIn("fail", verdicts)
         print(f"1 v 1, default settings: {len(verdicts)} runs, {shares(verdicts)} %")
 
     @unittest.skipUnless(all(path.is_file() for path in HEADINGS.values()), f"SKIPPED: the headings of the CXD5602, for they are not in {SHARED}")
     def test_the_noise_of_a_board_is_the_same_at_other_headings(self) -> None:
         verdicts = []
-        for run, document in self.workshop.all(BOARD, NOISE_OF_FLOATS):
+        for run, document in self.workshop.all(BOARD, NOISE_ALONE):
             self.assertEqual((beyond(document), failed_checks(document)), (set(), set()), run)
             verdicts.append(document["verdict"])
         self.assertNotIn("fail", verdicts)
@@ -293,7 +289,7 @@ def table(workshop: Workshop) -> str:
     for name, runs in UNCHANGED.items():
         row(name, runs, NOISE_ALONE)
     if all(path.is_file() for path in HEADINGS.values()):
-        row("2 v 2 headings of the CXD5602 board, 30 s each", BOARD, NOISE_OF_FLOATS)
+        row("2 v 2 headings of the CXD5602 board, 30 s each", BOARD, NOISE_ALONE)
     lines += ["", "| gyro x of the candidate times | plan | runs | noise alone | axes beyond their margin | specification: fails |",
               "|---|---|---|---|---|---|"]
     for (plan, factor), runs in LOUDER.items():
