@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace driftlab::figure {
 namespace {
@@ -79,14 +80,21 @@ void add_axes(const Area& area, std::vector<Shape>& shapes) {
   }
 }
 
-void add_guides(const Area& area, std::vector<Shape>& shapes) {
+constexpr double kGuidesBegin = 16.0;  ///< right of the frame
+
+/// From one guide to the next.
+double guides_apart(const Area& area) {
   constexpr double kWidest = 84.0;
+  const double guides = std::max(1.0, static_cast<double>(area.plot->guides.size()));
+  return std::min(kWidest, (area.right - area.left - kGuidesBegin) / guides);
+}
+
+void add_guides(const Area& area, std::vector<Shape>& shapes) {
   constexpr double kLongest = 46.0;
   constexpr double kRoomForText = 30.0;
-  const double guides = std::max(1.0, static_cast<double>(area.plot->guides.size()));
-  const double apart = std::min(kWidest, (area.right - area.left - 16.0) / guides);
+  const double apart = guides_apart(area);
   const double length = std::min(kLongest, apart - kRoomForText);
-  double x = area.left + 16.0;
+  double x = area.left + kGuidesBegin;
   const double y = area.bottom - 30.0;
   for (const Guide& guide : area.plot->guides) {
     const double rise = guide.slope * length;
@@ -263,11 +271,40 @@ void add_points(const Series& series, const Area& area, std::vector<Shape>& shap
   }
 }
 
-void add_note(const Note& note, const Area& area, std::vector<Shape>& shapes) {
+/// How far the text of each note that drops to the axis is lifted, so that it lies neither on its neighbour nor on the
+/// guides.
+std::vector<double> lifts_of(const Area& area) {
+  constexpr double kWidth = 124.0;
+  constexpr double kLines = 34.0;
+  constexpr double kGuides = 48.0;
+  const std::vector<Note>& notes = area.plot->notes;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    if (!notes[i].rule) {
+      order.push_back(i);
+    }
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return notes[a].x < notes[b].x; });
+  const double guides_end =
+      area.left + kGuidesBegin + guides_apart(area) * static_cast<double>(area.plot->guides.size());
+  std::vector<double> lifts(notes.size(), 0.0);
+  double before = -std::numeric_limits<double>::infinity();
+  double level = 0.0;
+  for (const std::size_t i : order) {
+    const double x = area.x.at(notes[i].x);
+    level = x - before < kWidth ? level + 1.0 : 0.0;
+    before = x;
+    lifts[i] = level * kLines + (!area.plot->guides.empty() && x < guides_end ? kGuides : 0.0);
+  }
+  return lifts;
+}
+
+void add_note(const Note& note, const Area& area, double lift, std::vector<Shape>& shapes) {
   const double x = area.x.at(note.x);
   const double y = area.y.at(note.y);
   const double text_x = note.rule ? area.right : x + 6.0;
-  const double text_y = note.rule ? y - (note.sub.empty() ? 6.0 : 17.0) : area.bottom - (note.sub.empty() ? 8.0 : 22.0);
+  const double text_y =
+      note.rule ? y - (note.sub.empty() ? 6.0 : 17.0) : area.bottom - lift - (note.sub.empty() ? 8.0 : 22.0);
   const Anchor anchor = note.rule ? Anchor::End : Anchor::Start;
   if (note.rule) {
     shapes.push_back(
@@ -369,8 +406,9 @@ Drawing draw(const Figure& figure, double width) {
     add_axes(area, drawing.shapes);
     add_guides(area, drawing.shapes);
     add_data(area, index++, drawing.shapes);
-    for (const Note& note : area.plot->notes) {
-      add_note(note, area, drawing.shapes);
+    const std::vector<double> lifts = lifts_of(area);
+    for (std::size_t i = 0; i < lifts.size(); ++i) {
+      add_note(area.plot->notes[i], area, lifts[i], drawing.shapes);
     }
   }
   add_keys(plan, drawing.shapes);

@@ -57,14 +57,19 @@ function Zones({place}: {place: Area}): JSX.Element {
   })}</g>;
 }
 
+const GUIDES_BEGIN = 16;
+function guidesApart({plot, left, right}: Area): number {
+  return Math.min(84, (right - left - GUIDES_BEGIN) / Math.max(plot.guides?.length ?? 0, 1));
+}
+
 // Slopes as short strokes near the lower left, where the data of an Allan deviation are not.
 function Guides({place}: {place: Area}): JSX.Element {
-  const {plot, left, right, bottom} = place;
+  const {plot, left, bottom} = place;
   const guides = plot.guides ?? [];
-  const apart = Math.min(84, (right - left - 16) / Math.max(guides.length, 1));
+  const apart = guidesApart(place);
   const length = Math.min(46, apart - 30);
   return <g>{guides.map((guide, i) => {
-    const x = left + 16 + i * apart;
+    const x = left + GUIDES_BEGIN + i * apart;
     const y = bottom - 30;
     const rise = guide.slope * length;
     return <g key={guide.text}>
@@ -74,17 +79,20 @@ function Guides({place}: {place: Area}): JSX.Element {
   })}</g>;
 }
 
-// How far the text of a note that drops to the axis is lifted, so that neighbours do not lie on each other.
+// How far the text of a note that drops to the axis is lifted, so that it lies neither on its neighbour nor on the guides.
 const NOTE_WIDTH = 124;
 const NOTE_LINES = 34;
+const GUIDES_HEIGHT = 48;
 function lifts(notes: readonly Note[], place: Area): Map<Note, number> {
   const lifted = new Map<Note, number>();
+  const guides = place.plot.guides?.length ?? 0;
+  const guidesEnd = guides > 0 ? place.left + GUIDES_BEGIN + guides * guidesApart(place) : -Infinity;
   let before = -Infinity;
   let level = 0;
   for (const note of notes.filter(each => each.drop).sort((a, b) => a.x - b.x)) {
     level = place.x(note.x) - before < NOTE_WIDTH ? level + 1 : 0;
     before = place.x(note.x);
-    lifted.set(note, level * NOTE_LINES);
+    lifted.set(note, level * NOTE_LINES + (place.x(note.x) < guidesEnd ? GUIDES_HEIGHT : 0));
   }
   return lifted;
 }
