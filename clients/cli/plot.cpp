@@ -30,8 +30,11 @@ struct Documented {
   std::optional<TabledCampaign> campaign = std::nullopt;  ///< of recordings characterised now
 };
 
+/// What is shown of a device: its parameter tables, or its newest recordings too.
+enum class DeviceShows { Tables, RecordingsToo };
+
 /// What a daemon has stored of a device, or under an id.
-tl::expected<Documented, Failure> stored_there(const PlotFlags& flags) {
+tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, DeviceShows shown) {
   if (flags.files.size() + (flags.file.device.empty() ? 0 : 1) != 1) {
     return tl::unexpected(Failure{{ErrorCode::InvalidArgument,
                                    "With --server name one thing that the daemon has stored: an id (rec_…, inv_… or "
@@ -39,8 +42,9 @@ tl::expected<Documented, Failure> stored_there(const PlotFlags& flags) {
                                    {}},
                                   Exit::BadInput});
   }
-  auto stored = flags.files.empty() ? fetch_tables(flags.server, flags.file.device)
-                                    : fetch_result(flags.server, flags.files.front());
+  const auto device = shown == DeviceShows::Tables ? fetch_tables : fetch_device;
+  auto stored =
+      flags.files.empty() ? device(flags.server, flags.file.device) : fetch_result(flags.server, flags.files.front());
   if (!stored) {
     return tl::unexpected(stored.error());
   }
@@ -48,9 +52,9 @@ tl::expected<Documented, Failure> stored_there(const PlotFlags& flags) {
 }
 
 /// A document as it stands, or recordings characterised now, with the name of their device.
-tl::expected<Documented, Failure> document_of(const PlotFlags& flags) {
+tl::expected<Documented, Failure> document_of(const PlotFlags& flags, DeviceShows shown) {
   if (!flags.server.empty()) {
-    return stored_there(flags);
+    return stored_there(flags, shown);
   }
   if (flags.files.empty()) {
     return tl::unexpected(Failure{
@@ -85,7 +89,7 @@ tl::expected<Documented, Failure> document_of(const PlotFlags& flags) {
 }
 
 Exit run_plot(const PlotFlags& flags) {
-  const auto document = document_of(flags);
+  const auto document = document_of(flags, DeviceShows::Tables);
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
@@ -94,12 +98,13 @@ Exit run_plot(const PlotFlags& flags) {
 }
 
 Exit run_report(const PlotFlags& flags) {
-  const auto document = document_of(flags);
+  const auto document = document_of(flags, DeviceShows::RecordingsToo);
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
   std::string tables;
-  if (document->document.contains("recordings") && document->document.at("recordings").is_array()) {
+  const bool tabled_there = document->document.contains("tables");
+  if (!tabled_there && document->document.contains("recordings") && document->document.at("recordings").is_array()) {
     const auto& told = document->campaign;
     const auto campaign = told ? Result<TabledCampaign>(*told) : tabled_from_json(document->document);
     if (!campaign) {

@@ -111,4 +111,31 @@ tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, co
   return StoredDocument{device, Json{{"device", device}, {"tables", std::move(tables)}}};
 }
 
+tl::expected<StoredDocument, Failure> fetch_device(const std::string& server, const std::string& device) {
+  auto stored = fetch_tables(server, device);
+  if (!stored) {
+    return stored;
+  }
+  const auto summary = fetch_document(server, "/v1/devices/" + percent_encode(device) + "/summary");
+  if (!summary) {
+    return tl::unexpected(summary.error());
+  }
+  std::set<std::string> newest;
+  for (const Json& channel : summary->at("channels")) {
+    newest.insert(text_member(channel, "recording"));
+  }
+  Json recordings = Json::array();
+  for (const std::string& id : newest) {
+    auto one = fetch_result(server, id);
+    if (!one) {
+      return one;
+    }
+    for (Json& recording : one->document["recordings"]) {
+      recordings.push_back(std::move(recording));
+    }
+  }
+  stored->document["recordings"] = std::move(recordings);
+  return stored;
+}
+
 }  // namespace driftlab::cli

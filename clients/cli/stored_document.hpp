@@ -20,4 +20,7 @@ struct StoredDocument {
 /// with `tables`. Errors: those of the daemon where it has none of them.
 [[nodiscard]] tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, const std::string& device);
 
+/// The same with `recordings`: what the newest characterisations of its channels say.
+[[nodiscard]] tl::expected<StoredDocument, Failure> fetch_device(const std::string& server, const std::string& device);
+
 }  // namespace driftlab::cli

@@ -11,7 +11,9 @@ namespace {
 std::string body_of(const Json& document) {
   if (document.contains("recordings") && document["recordings"].is_array() && !document["recordings"].empty() &&
       document["recordings"].front().contains("channels")) {
-    return page::characterisation_html(document);
+    const std::string recordings = page::characterisation_html(document);
+    return !document.contains("tables") ? recordings
+                                        : recordings + page::parameter_tables_html({{"tables", document.at("tables")}});
   }
   if (document.contains("units") && document.contains("verdict")) {
     return page::regression_html(document);

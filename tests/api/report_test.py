@@ -108,6 +108,8 @@ class Pages(unittest.TestCase):
             one = self.said("report", recording["id"], *server)
             gate = self.said("report", run["id"], *server)
             self.assertIn("<h1>imu-07</h1>", device)
+            self.assertIn('class="verdict"', device)
+            self.assertIn("Allan deviation against averaging time", device)
             for table in ("gyroscope z, WN+GM", "gyroscope z, Allan variance"):
                 self.assertIn(f"<h2>{table}</h2>", device)
             # One of the two recordings that one job has characterised, called by its name.
