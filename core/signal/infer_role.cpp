@@ -25,6 +25,7 @@ constexpr std::array kStems{
     Stem{"gyroscope", Quantity::AngularRate},
     Stem{"w", Quantity::AngularRate},
     Stem{"omega", Quantity::AngularRate},
+    Stem{"ω", Quantity::AngularRate},
     Stem{"rate", Quantity::AngularRate},
     Stem{"angularrate", Quantity::AngularRate},
     Stem{"angularvelocity", Quantity::AngularRate},
@@ -50,13 +51,20 @@ struct UnitWord {
 
 /// Units as they are written behind an underscore, where no slash can be.
 constexpr std::array kUnitWords{
-    UnitWord{"s", "s"},         UnitWord{"sec", "s"},          UnitWord{"ms", "ms"},       UnitWord{"us", "us"},
-    UnitWord{"ns", "ns"},       UnitWord{"dps", "deg/s"},      UnitWord{"degps", "deg/s"}, UnitWord{"degs", "deg/s"},
-    UnitWord{"radps", "rad/s"}, UnitWord{"rads", "rad/s"},     UnitWord{"mps2", "m/s^2"},  UnitWord{"ms2", "m/s^2"},
-    UnitWord{"g", "g"},         UnitWord{"mg", "mg"},          UnitWord{"degc", "degC"},   UnitWord{"c", "degC"},
-    UnitWord{"k", "K"},         UnitWord{"ut", "uT"},          UnitWord{"seconds", "s"},   UnitWord{"celsius", "degC"},
-    UnitWord{"gs", "g"},        UnitWord{"microteslas", "uT"}, UnitWord{"mdps", "mdeg/s"}, UnitWord{"mradps", "mrad/s"},
-    UnitWord{"degph", "deg/h"},
+    UnitWord{"s", "s"},           UnitWord{"sec", "s"},
+    UnitWord{"ms", "ms"},         UnitWord{"us", "us"},
+    UnitWord{"ns", "ns"},         UnitWord{"dps", "deg/s"},
+    UnitWord{"degps", "deg/s"},   UnitWord{"degs", "deg/s"},
+    UnitWord{"radps", "rad/s"},   UnitWord{"rads", "rad/s"},
+    UnitWord{"mps2", "m/s^2"},    UnitWord{"ms2", "m/s^2"},
+    UnitWord{"g", "g"},           UnitWord{"mg", "mg"},
+    UnitWord{"degc", "degC"},     UnitWord{"c", "degC"},
+    UnitWord{"k", "K"},           UnitWord{"ut", "uT"},
+    UnitWord{"seconds", "s"},     UnitWord{"celsius", "degC"},
+    UnitWord{"gs", "g"},          UnitWord{"microteslas", "uT"},
+    UnitWord{"mdps", "mdeg/s"},   UnitWord{"mradps", "mrad/s"},
+    UnitWord{"degph", "deg/h"},   UnitWord{"ug", "ug"},
+    UnitWord{"uradps", "urad/s"}, UnitWord{"urads", "urad/s"},
 };
 
 /// The same in several words.
@@ -65,6 +73,8 @@ constexpr std::array kUnitPhrases{
     UnitWord{"_deg_s", "_degps"},       UnitWord{"_rad_s", "_radps"},     UnitWord{"_mrad_s", "_mradps"},
     UnitWord{"_m_s2", "_mps2"},         UnitWord{"_m_s^2", "_mps2"},      UnitWord{"_deg_per_sec", "_degps"},
     UnitWord{"_rad_per_sec", "_radps"}, UnitWord{"_deg_h", "_degph"},     UnitWord{"_deg_per_h", "_degph"},
+    UnitWord{"_mdeg_s", "_mdps"},       UnitWord{"_urad_s", "_uradps"},   UnitWord{"_µrad_s", "_uradps"},
+    UnitWord{"_μrad_s", "_uradps"},     UnitWord{"_m_s²", "_mps2"},
 };
 
 /// Words in front of a quantity that do not change it.
@@ -122,15 +132,21 @@ std::string_view take_bracket(std::string_view& name) {
   return trim(inside);
 }
 
-/// Letters and digits only, in lower case: "Gyroscope x" -> "gyroscopex".
-std::string squash(std::string_view name) {
-  std::string squashed;
-  for (const char c : lower_case(name)) {
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
-      squashed += c;
-    }
+bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
   }
-  return squashed;
+}
+
+/// Letters, digits and signs beyond ASCII, in lower case: "Gyroscope x" -> "gyroscopex". A sign such as µ or ² may
+/// change what is meant, so it stays and makes another name of it; a blank that does not break a line is a blank.
+std::string squash(std::string_view name) {
+  std::string text = lower_case(name);
+  replace_all(text, "\u00a0", " ");
+  std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x80 && !is_letter_or_digit(c); });
+  return text;
 }
 
 bool is_axis_letter(char c) { return c == 'x' || c == 'y' || c == 'z'; }
@@ -209,21 +225,34 @@ std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<
   return std::nullopt;
 }
 
+/// The unit that is the last word of a name, `dps`, `m/s²`, `µg`: one of kUnitWords, in any case, or as it is written
+/// in brackets. A sign that is not understood makes it none.
+std::optional<Unit> unit_of_word(std::string_view written) {
+  if (auto unit = known_unit(written)) {
+    return unit->dimension == Dimension::One ? std::nullopt : std::move(unit);
+  }
+  std::string word = lower_case(written);
+  for (const auto& [sign, letter] : {std::pair{"µ", "u"}, std::pair{"μ", "u"}, std::pair{"²", "2"}}) {
+    replace_all(word, sign, letter);
+  }
+  const bool quotient = word.find('/') != std::string::npos;
+  std::erase_if(word, [](char c) { return c == '/' || c == '^'; });
+  const auto known =
+      std::find_if(kUnitWords.begin(), kUnitWords.end(), [&](const UnitWord& w) { return w.word == word; });
+  return known == kUnitWords.end() || (quotient && known->symbol.find('/') == std::string_view::npos)
+             ? std::nullopt
+             : known_unit(known->symbol);
+}
+
 /// `time_ms`, `gyro_x_dps`, `fx_mps2`: the last word is a unit, if what is before it is a quantity which that measures.
 std::optional<ColumnRole> infer_suffixed(std::string_view name) {
   const std::size_t cut = name.find_last_of("_ ");
   if (cut == std::string_view::npos) {
     return std::nullopt;
   }
-  const std::string word = squash(name.substr(cut + 1));
-  const auto known =
-      std::find_if(kUnitWords.begin(), kUnitWords.end(), [&](const UnitWord& w) { return w.word == word; });
-  if (known == kUnitWords.end()) {
-    return std::nullopt;
-  }
-  const std::optional<Unit> unit = known_unit(known->symbol);
-  auto role = infer_bare(name.substr(0, cut), unit);
-  return role && unit && measures(*unit, role->quantity) ? role : std::nullopt;
+  const std::optional<Unit> unit = unit_of_word(name.substr(cut + 1));
+  auto role = unit ? infer_bare(name.substr(0, cut), unit) : std::nullopt;
+  return role && measures(*unit, role->quantity) ? role : std::nullopt;
 }
 
 /// `name` without plain words in front: "imu_gyr_x" -> "gyr_x", "SENSgyro_x" -> "gyro_x". Itself if there are none.

@@ -127,6 +127,50 @@ TEST(InferRole, UnderstandsTheNamesThatToolsGive) {
   }
 }
 
+TEST(InferRole, KeepsTheSignsOfAUnitBehindAnUnderscore) {
+  // `acc_x_µg` was read in g and `time_µs` in s: bytes beyond ASCII were dropped.
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"acc_x_\u00b5g", "specific_force x [ug]"},
+      {"acc_x_\u03bcg", "specific_force x [ug]"},
+      {"ax_ug", "specific_force x [ug]"},
+      {"AX_UG", "specific_force x [ug]"},
+      {"gyro_x_\u00b5rad/s", "angular_rate x [urad/s]"},
+      {"gyro_x_\u03bcrad/s", "angular_rate x [urad/s]"},
+      {"gyro_x_\u00b5radps", "angular_rate x [urad/s]"},
+      {"gyro_x_\u00b5rad_s", "angular_rate x [urad/s]"},
+      {"gyro_x_urad_s", "angular_rate x [urad/s]"},
+      {"gyro_x_mdeg_s", "angular_rate x [mdeg/s]"},
+      {"time_\u00b5s", "time [us]"},
+      {"time_\u03bcs", "time [us]"},
+      {"Accel_X_m/s\u00b2", "specific_force x [m/s^2]"},
+      {"ACCEL_X_M/S\u00b2", "specific_force x [m/s^2]"},
+      {"acc_x_m_s\u00b2", "specific_force x [m/s^2]"},
+      {"acc_x_mps\u00b2", "specific_force x [m/s^2]"},
+      {"ACC_X_M/S^2", "specific_force x [m/s^2]"},
+      {"gyro_x_\u00b0/s", "angular_rate x [deg/s]"},
+      {"gx \u00b0/h", "angular_rate x [deg/h]"},
+      {"gyro_z_deg/hr", "angular_rate z [deg/h]"},
+      {"Gyro_X_Deg/s", "angular_rate x [deg/s]"},
+      {"temp_\u00b0C", "temperature [degC]"},
+      {"mag_x_\u00b5T", "magnetic_field x [uT]"},
+      {"\u03c9_x / (rad/s)", "angular_rate x [rad/s]"},
+      {"Gyro\u00a0X (deg/s)", "angular_rate x [deg/s]"},
+      // Signs that mean something else, or nothing that is known:
+      {"acc_x_\u2030g", "unspecified [-]"},
+      {"gyro_x_\u0394rad/s", "unspecified [-]"},
+      {"acc_x_\u00b5", "unspecified [-]"},
+      {"acc_x_\u00b5_g", "unspecified [-]"},
+      {"a_x\u00b2", "unspecified [-]"},
+      {"\u0394gx", "unspecified [-]"},
+      {"acc_x_m/g", "unspecified [-]"},
+      {"time_m/s", "unspecified [-]"},
+      {"gyro_x_raw", "unspecified [-]"},
+  };
+  for (const auto& [name, expected] : cases) {
+    EXPECT_EQ(described(infer_role(name)), expected) << name;
+  }
+}
+
 TEST(AssignRoles, PrefersThePlainNameToTheOneOfATool) {
   const auto roles = assign_roles({}, {"acc_x (g)", "linear_acceleration_x (g)", "gyro[0]", "gyro_y", "gyro[1]"});
   ASSERT_TRUE(roles) << roles.error().message;
