@@ -317,17 +317,35 @@ std::string as_read(std::string_view written) {
   return with_short_unit(with_axis_of_index(name));
 }
 
-/// True for a name that is that of a sensor by what as_read() makes of it: beside a column that is so by its plain name
-/// it is another thing.
-bool is_second_choice(std::string_view written) {
-  return as_read(written) != with_short_unit(without_plain_words(written));
-}
-
 bool states_no_unit(std::string_view bracket) {
   return bracket == "-" || std::find(kNoUnits.begin(), kNoUnits.end(), squash(bracket)) != kNoUnits.end();
 }
 
-/// A unit in brackets that is not known, behind a name that says what is measured.
+/// True for `T (°C)`, `T(°)`, `T [F]`: no time, where a unit of temperature or the sign of degrees stands behind it.
+bool is_letter_of_temperature(std::string_view name, std::string_view bracket) {
+  if (squash(name) != "t") {
+    return false;
+  }
+  const auto unit = known_unit(bracket, Quantity::Temperature);
+  return unit ? unit->dimension == Dimension::Temperature || unit->dimension == Dimension::Angle
+              : squash(bracket) == "f" || bracket == "°F" || squash(bracket) == "degf";
+}
+
+/// A name as it is read, its unit in brackets apart.
+struct NameParts {
+  std::string name;
+  std::string bracket;
+};
+
+NameParts parts_of(std::string_view written) {
+  const std::string text = as_read(written);
+  std::string_view name = text;
+  const std::string_view bracket = take_bracket(name);
+  return {is_letter_of_temperature(name, bracket) ? "temp" : std::string(name), std::string(bracket)};
+}
+
+/// A unit in brackets that is not known, behind a name that says what is measured. Of a temperature also one that
+/// measures something else, as the sign of degrees alone.
 struct UnknownUnit {
   Quantity quantity;
   std::string symbol;
@@ -335,16 +353,25 @@ struct UnknownUnit {
 };
 
 std::optional<UnknownUnit> unknown_unit(std::string_view written) {
-  const std::string text = as_read(written);
-  std::string_view name = text;
-  const std::string_view bracket = take_bracket(name);
+  const auto [name, bracket] = parts_of(written);
   const auto role = infer_bare(name, std::nullopt);
   if (bracket.empty() || states_no_unit(bracket) || !role) {
     return std::nullopt;
   }
   auto unit = parse_unit(bracket, role->quantity);
-  return unit ? std::nullopt
-              : std::optional(UnknownUnit{role->quantity, std::string(bracket), std::move(unit).error()});
+  if (unit && (role->quantity != Quantity::Temperature || measures(*unit, Quantity::Temperature))) {
+    return std::nullopt;
+  }
+  return UnknownUnit{role->quantity, bracket, unit ? Error{} : std::move(unit).error()};
+}
+
+/// True for a name that is that of a sensor by what as_read() makes of it, or a temperature by one letter: beside a
+/// column that is so by its plain name it is another thing.
+bool is_second_choice(std::string_view written) {
+  const std::string text = as_read(written);
+  std::string_view name = text;
+  const std::string_view bracket = take_bracket(name);
+  return text != with_short_unit(without_plain_words(written)) || is_letter_of_temperature(name, bracket);
 }
 
 }  // namespace
@@ -415,9 +442,7 @@ std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
 }
 
 ColumnRole infer_role(std::string_view written) {
-  const std::string text = as_read(written);
-  std::string_view name = text;
-  const std::string_view bracket = take_bracket(name);
+  const auto [name, bracket] = parts_of(written);
   if (bracket.empty()) {
     if (auto role = infer_suffixed(name)) {
       return *role;
@@ -425,7 +450,11 @@ ColumnRole infer_role(std::string_view written) {
   }
   const auto bare = infer_bare(name, std::nullopt);
   const Quantity quantity = bare ? bare->quantity : Quantity::Unspecified;
-  return infer_bare(name, known_unit(bracket, quantity)).value_or(ColumnRole{});
+  ColumnRole role = infer_bare(name, known_unit(bracket, quantity)).value_or(ColumnRole{});
+  if (role.quantity == Quantity::Temperature && role.unit && !measures(*role.unit, role.quantity)) {
+    role.unit.reset();
+  }
+  return role;
 }
 
 }  // namespace driftlab

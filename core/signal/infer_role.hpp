@@ -14,7 +14,7 @@ namespace driftlab {
 /// rest of the name is compared without regard to case, blanks and punctuation:
 ///
 ///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us)
-///   temperature      temp, temperature
+///   temperature      temp, temperature; t with a unit of temperature or ° in brackets: T (°C), T(°)
 ///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity, with x, y or z before or behind
 ///   specific force   a acc accel accelerometer acceleration f specific_force, likewise
 ///   magnetic field   m mag magnetometer magnetic_field, likewise
@@ -35,7 +35,7 @@ namespace driftlab {
 [[nodiscard]] bool reads_names(const RecordingSpec& spec);
 
 /// The role of each column of a file: that of its struct, else that of its own name. Of two for one quantity and axis
-/// an index or a linear_acceleration yields to the plainer name.
+/// an index, a linear_acceleration or a T (°C) yields to the plainer name.
 [[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in
@@ -47,8 +47,8 @@ namespace driftlab {
 /// True where a known unit stands in brackets behind the name, whatever the name is.
 [[nodiscard]] bool states_unit(std::string_view name);
 
-/// What stands in brackets behind the name of a temperature and is no known unit, `F` of `temp (F)`; empty for any
-/// other name.
+/// What stands in brackets behind the name of a temperature and is no known unit of one, `F` of `temp (F)`, `°` of
+/// `T(°)`; empty for any other name.
 [[nodiscard]] std::string unknown_unit_of_temperature(std::string_view name);
 
 }  // namespace driftlab

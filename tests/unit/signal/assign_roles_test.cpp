@@ -201,6 +201,26 @@ TEST(AssignRoles, TakesATemperatureWithoutItsUnitWhereThatIsNotKnown) {
   EXPECT_EQ(unknown_unit_of_temperature("gx (F)"), "");
 }
 
+TEST(AssignRoles, TakesTheLetterOfATemperatureForNoTime) {
+  // WitMotion's `T(°)` refused its logs: "the unit deg does not measure time".
+  const auto roles = assign_roles({}, {"time(s)", "ax(g)", "wx(deg/s)", "AngleX(deg)", "T(\u00b0)"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "time [s]");
+  EXPECT_EQ(described(*roles->at(4)), "temperature [-]");
+  EXPECT_EQ(unknown_unit_of_temperature("T(\u00b0)"), "\u00b0");
+  EXPECT_EQ(described(infer_role("T (\u00b0C)")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("T [C]")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("T [K]")), "temperature [K]");
+  EXPECT_EQ(described(infer_role("T (F)")), "temperature [-]");
+  EXPECT_EQ(described(infer_role("T [ms]")), "time [ms]");
+  EXPECT_EQ(described(infer_role("T")), "time [-]");
+  const auto degrees = assign_roles({}, {"gx", "Temp(\u00b0)", "T (\u00b0C)"});
+  ASSERT_TRUE(degrees) << degrees.error().message;
+  EXPECT_EQ(described(*degrees->at(1)), "temperature [-]");
+  EXPECT_EQ(described(*degrees->at(2)), "unspecified [-]") << "the plainer name is the temperature";
+  EXPECT_EQ(failure(assign_roles({}, {"gx", "t (furlong)"})), "unknown_unit column=t (furlong) unit=furlong");
+}
+
 TEST(AssignRoles, TakesCountsInTheNameOfASensorForNoUnitOfTime) {
   for (const char* const name : {"gz [digits]", "gz [LSBs]", "gz (digit)", "gz [LSBS]"}) {
     const auto roles = assign_roles({}, {"gx", name});
