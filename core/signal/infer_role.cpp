@@ -106,6 +106,9 @@ constexpr std::array<std::string_view, 20> kNoUnits{
 
 constexpr std::array<std::string_view, 7> kTimeNames{"t", "ts", "time", "timestamp", "zeit", "temps", "tiempo"};
 
+/// Clocks by names that alone may be anything: times with a unit of time behind them, `epoc (ms)`, `elapsed (s)`.
+constexpr std::array<std::string_view, 4> kTimeNamesWithUnit{"elapsed", "elapsedtime", "epoch", "epoc"};
+
 /// Whose time it is, before or behind the word: `TimestampGyro [ns]`, `imu_time (s)`, `device_timestamp_us`.
 constexpr std::array<std::string_view, 18> kClocks{
     "gyro",   "gyr",    "gyroscope", "acc",    "accel", "accelerometer", "mag",   "magnetometer", "imu",
@@ -190,10 +193,22 @@ Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {
   return found == kStems.end() ? Quantity::Unspecified : found->quantity;
 }
 
+/// "xaxis", "gyroxaxis" without the word behind the axis.
+std::string_view without_word_axis(std::string_view squashed) {
+  constexpr std::string_view kAxis = "axis";
+  const std::size_t kept = squashed.size() - std::min(squashed.size(), kAxis.size());
+  return squashed.ends_with(kAxis) && kept > 0 && is_axis_letter(squashed[kept - 1]) ? squashed.substr(0, kept)
+                                                                                     : squashed;
+}
+
 /// The role of a name from which the unit has been cut off.
 std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<Unit>& unit) {
   const std::string squashed = squash(name);
   if (is_time_name(squashed)) {
+    return ColumnRole{Quantity::Time, "", unit};
+  }
+  if (unit && unit->dimension == Dimension::Time &&
+      std::find(kTimeNamesWithUnit.begin(), kTimeNamesWithUnit.end(), squashed) != kTimeNamesWithUnit.end()) {
     return ColumnRole{Quantity::Time, "", unit};
   }
   if (squashed == "millis") {
@@ -213,7 +228,7 @@ std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<
       return ColumnRole{Quantity::AngularRate, axis, unit};
     }
   }
-  const std::string_view whole = squashed;
+  const std::string_view whole = without_word_axis(squashed);
   const std::array<std::pair<char, std::string_view>, 2> splits{
       std::pair{whole.back(), whole.substr(0, whole.size() - 1)}, std::pair{whole.front(), whole.substr(1)}};
   for (const auto& [axis, stem] : splits) {
@@ -317,8 +332,19 @@ std::string as_read(std::string_view written) {
   return with_short_unit(with_axis_of_index(name));
 }
 
+/// `+0100`, `-05:00`, `UTC+1`, `GMT`: what phones write behind a time of day.
+bool is_time_zone(std::string_view bracket) {
+  const std::string text = lower_case(bracket);
+  const bool named = text.starts_with("utc") || text.starts_with("gmt");
+  const std::string_view shift = std::string_view(text).substr(named ? 3 : 0);
+  return shift.empty() ? named
+                       : (shift.front() == '+' || shift.front() == '-') && shift.size() > (named ? 1 : 4) &&
+                             shift.find_first_not_of("0123456789:", 1) == std::string_view::npos;
+}
+
 bool states_no_unit(std::string_view bracket) {
-  return bracket == "-" || std::find(kNoUnits.begin(), kNoUnits.end(), squash(bracket)) != kNoUnits.end();
+  return bracket == "-" || is_time_zone(bracket) ||
+         std::find(kNoUnits.begin(), kNoUnits.end(), squash(bracket)) != kNoUnits.end();
 }
 
 /// True for `T (°C)`, `T(°)`, `T [F]`: no time, where a unit of temperature or the sign of degrees stands behind it.

@@ -13,7 +13,8 @@ namespace driftlab {
 /// A unit in brackets at the end (`gyro_x [deg/s]`, `time (ms)`, `Gyroscope x (rad/s)`) is used if it is known. The
 /// rest of the name is compared without regard to case, blanks and punctuation:
 ///
-///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us)
+///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us);
+///                    with a unit of time alone epoch, epoc, elapsed
 ///   temperature      temp, temperature; t with a unit of temperature or ° in brackets: T (°C), T(°)
 ///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity, with x, y or z before or behind
 ///   specific force   a acc accel accelerometer acceleration f specific_force, likewise
@@ -40,8 +41,8 @@ namespace driftlab {
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in
 /// unit 1 would give a wrong answer. A temperature is not analysed: unknown_unit_of_temperature() says so instead.
-/// Words for raw numbers are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time (UTC)`), and a name that implies
-/// no role may have anything in brackets. Error: UnknownUnit with fields `column` and `unit`.
+/// Words for raw numbers and time zones are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time (+0100)`), and a
+/// name that implies no role may have anything in brackets. Error: UnknownUnit with fields `column` and `unit`.
 [[nodiscard]] Status check_bracketed_unit(std::string_view name);
 
 /// True where a known unit stands in brackets behind the name, whatever the name is.

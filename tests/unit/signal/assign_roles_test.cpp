@@ -322,6 +322,35 @@ TEST(AssignRoles, KnowsTheTimeThatIsNamedAfterItsSensor) {
   EXPECT_FALSE(both->at(2));
 }
 
+TEST(AssignRoles, ReadsTheNamesOfMetaWear) {
+  // Refused: "The unit '+0100' is not known". With `elapsed` stated as the time, `epoc (ms)` was taken for a sensor.
+  const ColumnNames names{"epoc (ms)",      "timestamp (+0100)", "elapsed (s)",
+                          "x-axis (deg/s)", "y-axis (deg/s)",    "z-axis (deg/s)"};
+  const auto roles = assign_roles({}, names);
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "time [ms]");
+  EXPECT_FALSE(roles->at(1));
+  EXPECT_FALSE(roles->at(2)) << "a second clock";
+  EXPECT_EQ(described(*roles->at(3)), "angular_rate x [deg/s]");
+  EXPECT_EQ(described(*roles->at(5)), "angular_rate z [deg/s]");
+  RecordingSpec spec;
+  spec.columns = {{"elapsed (s)", {Quantity::Time, "", unit("s")}}};
+  const auto stated = assign_roles(spec, names);
+  ASSERT_TRUE(stated) << stated.error().message;
+  EXPECT_FALSE(stated->at(0)) << "a second clock";
+  EXPECT_EQ(described(*stated->at(2)), "time [s]");
+  EXPECT_EQ(described(*stated->at(3)), "angular_rate x [deg/s]");
+  for (const char* const zone : {"time (-05:00)", "time (UTC+1)", "time (GMT)", "timestamp (UTC+05:30)"}) {
+    EXPECT_TRUE(assign_roles({}, {"gx", zone})) << zone;
+  }
+  EXPECT_EQ(failure(assign_roles({}, {"gx", "time (+1)"})), "unknown_unit column=time (+1) unit=+1");
+  EXPECT_EQ(described(infer_role("epoch_ms")), "time [ms]");
+  EXPECT_EQ(described(infer_role("epoch")), "unspecified [-]");
+  EXPECT_EQ(described(infer_role("elapsed (m)")), "unspecified [-]");
+  EXPECT_EQ(described(infer_role("x-axis")), "unspecified [-]");
+  EXPECT_EQ(described(infer_role("accel_y_axis (g)")), "specific_force y [g]");
+}
+
 TEST(AssignRoles, DoesNotGuessBetweenTwoColumnsOrAgainstAUnit) {
   EXPECT_EQ(failure(assign_roles({}, {"gx", "gyro_x"})), "duplicate_column column=gyro_x");
   EXPECT_EQ(failure(assign_roles({}, {"ax (deg/s)"})), "unit_mismatch column=ax (deg/s) unit=deg/s");
