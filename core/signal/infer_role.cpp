@@ -29,11 +29,17 @@ constexpr std::array kStems{
     Stem{"rate", Quantity::AngularRate},
     Stem{"angularrate", Quantity::AngularRate},
     Stem{"angularvelocity", Quantity::AngularRate},
+    Stem{"angrate", Quantity::AngularRate},
+    Stem{"drehrate", Quantity::AngularRate},
+    Stem{"winkelgeschwindigkeit", Quantity::AngularRate},
+    Stem{"gyrorotation", Quantity::AngularRate},
     Stem{"a", Quantity::SpecificForce},
     Stem{"acc", Quantity::SpecificForce},
     Stem{"accel", Quantity::SpecificForce},
     Stem{"accelerometer", Quantity::SpecificForce},
     Stem{"acceleration", Quantity::SpecificForce},
+    Stem{"beschleunigung", Quantity::SpecificForce},
+    Stem{"accelerometeracceleration", Quantity::SpecificForce},
     Stem{"f", Quantity::SpecificForce},
     Stem{"specificforce", Quantity::SpecificForce},
     Stem{"wb", Quantity::AngularRate},
@@ -43,6 +49,9 @@ constexpr std::array kStems{
     Stem{"magnetometer", Quantity::MagneticField},
     Stem{"magneticfield", Quantity::MagneticField},
 };
+
+/// Words beside an axis that may be anything: the unit says what is measured, `Rotation X [°/s]`.
+constexpr std::array<std::string_view, 5> kByUnit{"", "rotation", "rotationrate", "angularspeed", "turnrate"};
 
 struct UnitWord {
   std::string_view word;
@@ -176,7 +185,7 @@ bool is_time_name(std::string_view squashed) {
 }
 
 Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {
-  if (stem.empty() && unit) {
+  if (unit && std::find(kByUnit.begin(), kByUnit.end(), stem) != kByUnit.end()) {
     switch (unit->dimension) {
       case Dimension::AngularRate:
         return Quantity::AngularRate;
@@ -268,6 +277,18 @@ std::optional<ColumnRole> infer_suffixed(std::string_view name) {
   const std::optional<Unit> unit = unit_of_word(name.substr(cut + 1));
   auto role = unit ? infer_bare(name.substr(0, cut), unit) : std::nullopt;
   return role && measures(*unit, role->quantity) ? role : std::nullopt;
+}
+
+/// `acc_x/mg`, `t/s`, `wz/°/s`: the quantity by its unit, as DIN 1313 heads a table.
+std::optional<ColumnRole> infer_quotient(std::string_view name) {
+  for (std::size_t at = name.find('/'); at != std::string_view::npos; at = name.find('/', at + 1)) {
+    const std::optional<Unit> unit = unit_of_word(trim(name.substr(at + 1)));
+    auto role = unit ? infer_bare(name.substr(0, at), unit) : std::nullopt;
+    if (role && measures(*unit, role->quantity)) {
+      return role;
+    }
+  }
+  return std::nullopt;
 }
 
 /// `name` without plain words in front: "imu_gyr_x" -> "gyr_x", "SENSgyro_x" -> "gyro_x". Itself if there are none.
@@ -470,8 +491,10 @@ std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
 ColumnRole infer_role(std::string_view written) {
   const auto [name, bracket] = parts_of(written);
   if (bracket.empty()) {
-    if (auto role = infer_suffixed(name)) {
-      return *role;
+    for (const auto infer : {infer_suffixed, infer_quotient}) {
+      if (auto role = infer(name)) {
+        return *role;
+      }
     }
   }
   const auto bare = infer_bare(name, std::nullopt);

@@ -16,14 +16,17 @@ namespace driftlab {
 ///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us);
 ///                    with a unit of time alone epoch, epoc, elapsed
 ///   temperature      temp, temperature; t with a unit of temperature or ° in brackets: T (°C), T(°)
-///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity, with x, y or z before or behind
-///   specific force   a acc accel accelerometer acceleration f specific_force, likewise
+///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity ang_rate gyro_rotation Drehrate
+///                    Winkelgeschwindigkeit, with x, y or z before or behind
+///   specific force   a acc accel accelerometer acceleration f specific_force accelerometer_acceleration
+///                    Beschleunigung, likewise
 ///   magnetic field   m mag magnetometer magnetic_field, likewise
 ///
 /// and also in the names that tools give: a unit behind `_` in one word or several (gyro_x_dps, gyro_x_rad_s,
 /// acc_x_m_s2), an index for the axis (gyro_rad[0], accelerometer_m_s2[2], as PX4's ulog2csv), linear_acceleration_x as
 /// in ROS. Leading words that change nothing are skipped: raw_acceleration_x_gs, imu_gyr_x and imu.wb_z are understood;
-/// GyroscopeUncalibrated is not. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
+/// GyroscopeUncalibrated is not. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate,
+/// as is `x-axis (deg/s)` or `Rotation X (rad/s)`. A quantity by its unit, `acc_x/mg`, is read as well.
 [[nodiscard]] ColumnRole infer_role(std::string_view name);
 
 /// The structs of NaveGo among the columns of a file, by their names: those with the members `t`, `wb_x`, `wb_y`,

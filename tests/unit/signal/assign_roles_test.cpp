@@ -171,6 +171,36 @@ TEST(InferRole, KeepsTheSignsOfAUnitBehindAnUnderscore) {
   }
 }
 
+TEST(InferRole, TakesTheQuantityFromTheUnitAndTheAxisFromTheName) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"Drehrate X [\u00b0/s]", "angular_rate x [deg/s]"},
+      {"Winkelgeschwindigkeit Z [rad/s]", "angular_rate z [rad/s]"},
+      {"Beschleunigung Y [m/s\u00b2]", "specific_force y [m/s^2]"},
+      {"xAngRate (deg/s)", "angular_rate x [deg/s]"},
+      {"gyroRotationX(rad/s)", "angular_rate x [rad/s]"},
+      {"Rotation X [dps]", "angular_rate x [deg/s]"},
+      {"Y-axis (mg)", "specific_force y [mg]"},
+      {"acc_x/mg", "specific_force x [mg]"},
+      {"acc_x/\u00b5g", "specific_force x [ug]"},
+      {"acc_z / mg", "specific_force z [mg]"},
+      {"acc_z/(m/s^2)", "specific_force z [m/s^2]"},
+      {"Drehrate X/\u00b0/s", "angular_rate x [deg/s]"},
+      {"gyro_z/deg/s", "angular_rate z [deg/s]"},
+      {"t/s", "time [s]"},
+      // What is no rate and no force, and what no unit tells:
+      {"Rotation X [deg]", "unspecified [-]"},
+      {"Rotation X", "unspecified [-]"},
+      {"AngleX(deg)", "unspecified [-]"},
+      {"gyro_bias_x (deg/s)", "unspecified [-]"},
+      {"gravityX (m/s^2)", "unspecified [-]"},
+      {"gx/g", "unspecified [-]"},
+      {"/imu/gyro", "unspecified [-]"},
+  };
+  for (const auto& [name, expected] : cases) {
+    EXPECT_EQ(described(infer_role(name)), expected) << name;
+  }
+}
+
 TEST(AssignRoles, PrefersThePlainNameToTheOneOfATool) {
   const auto roles = assign_roles({}, {"acc_x (g)", "linear_acceleration_x (g)", "gyro[0]", "gyro_y", "gyro[1]"});
   ASSERT_TRUE(roles) << roles.error().message;
