@@ -180,7 +180,17 @@ bool is_time_name(std::string_view squashed) {
     const std::string_view word = before                      ? squashed.substr(clock.size())
                                   : squashed.ends_with(clock) ? squashed.substr(0, squashed.size() - clock.size())
                                                               : std::string_view();
-    return word == "time" || word == "timestamp";
+    return word == "time" || word == "timestamp" || word == "timestampsincereboot";
+  });
+}
+
+/// `temp`, `temperature`, also with what is as warm in front: `gyro_temp`.
+bool is_temperature_name(std::string_view squashed) {
+  constexpr std::array<std::string_view, 9> kDevices{"",      "gyro",          "gyr", "gyroscope", "acc",
+                                                     "accel", "accelerometer", "imu", "sensor"};
+  return std::any_of(kDevices.begin(), kDevices.end(), [squashed](std::string_view device) {
+    const std::string_view word = squashed.starts_with(device) ? squashed.substr(device.size()) : std::string_view();
+    return word == "temp" || word == "temperature";
   });
 }
 
@@ -226,7 +236,7 @@ std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<
   if (squashed == "secondselapsed") {
     return ColumnRole{Quantity::Time, "", known_unit("s")};
   }
-  if (squashed == "temp" || squashed == "temperature") {
+  if (is_temperature_name(squashed)) {
     return ColumnRole{Quantity::Temperature, "", unit};
   }
   if (squashed.empty()) {
@@ -412,13 +422,12 @@ std::optional<UnknownUnit> unknown_unit(std::string_view written) {
   return UnknownUnit{role->quantity, bracket, unit ? Error{} : std::move(unit).error()};
 }
 
-/// True for a name that is that of a sensor by what as_read() makes of it, or a temperature by one letter: beside a
-/// column that is so by its plain name it is another thing.
-bool is_second_choice(std::string_view written) {
+/// True for a name that is that of a sensor by what as_read() makes of it, or a temperature by one letter or of one
+/// device: beside a column that is so by its plain name it is another thing.
+bool is_second_choice(std::string_view written, Quantity quantity) {
   const std::string text = as_read(written);
-  std::string_view name = text;
-  const std::string_view bracket = take_bracket(name);
-  return text != with_short_unit(without_plain_words(written)) || is_letter_of_temperature(name, bracket);
+  return text != with_short_unit(without_plain_words(written)) ||
+         (quantity == Quantity::Temperature && !squash(text).starts_with("temp"));
 }
 
 }  // namespace
@@ -476,10 +485,14 @@ std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
                           : infer_role(name));
   }
   std::vector<bool> second(names.size());
-  std::transform(names.begin(), names.end(), second.begin(), is_second_choice);
+  std::transform(names.begin(), names.end(), roles.begin(), second.begin(),
+                 [](const std::string& name, const ColumnRole& role) { return is_second_choice(name, role.quantity); });
+  const auto comes_first = [&](std::size_t j, std::size_t i) {
+    return !second[j] || (roles[i].quantity == Quantity::Temperature && j < i);  // of devices the first will do
+  };
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (std::size_t j = 0; j < names.size() && second[i]; ++j) {
-      if (roles[j].quantity == roles[i].quantity && roles[j].axis == roles[i].axis && !second[j]) {
+      if (roles[j].quantity == roles[i].quantity && roles[j].axis == roles[i].axis && comes_first(j, i)) {
         roles[i] = {};
         break;
       }

@@ -15,8 +15,9 @@ namespace driftlab {
 ///
 ///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us);
 ///                    with a unit of time alone epoch, epoc, elapsed
-///   temperature      temp, temperature; t with a unit of temperature or ° in brackets: T (°C), T(°)
-///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity ang_rate gyro_rotation Drehrate
+///   temperature      temp, temperature, also of a sensor (gyro_temp); t with a unit of temperature or ° in brackets: T
+///   (°C), T(°) angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity ang_rate gyro_rotation
+///   Drehrate
 ///                    Winkelgeschwindigkeit, with x, y or z before or behind
 ///   specific force   a acc accel accelerometer acceleration f specific_force accelerometer_acceleration
 ///                    Beschleunigung, likewise
@@ -39,7 +40,8 @@ namespace driftlab {
 [[nodiscard]] bool reads_names(const RecordingSpec& spec);
 
 /// The role of each column of a file: that of its struct, else that of its own name. Of two for one quantity and axis
-/// an index, a linear_acceleration or a T (°C) yields to the plainer name.
+/// an index, a linear_acceleration, a T (°C) or a gyro_temp yields to the plainer name; of several temperatures of
+/// sensors the first is taken.
 [[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in

@@ -17,9 +17,41 @@ bool holds_text(std::span<const double> values) {
   return !values.empty() && std::isnan(values.front()) && why_missing(values.front()).why == Missing::Text;
 }
 
+/// The words of a name in lower case, between marks and where a capital follows a small letter; not those in brackets.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  char before = ' ';
+  for (const char c : name.substr(0, name.find_first_of("(["))) {
+    const char small = lower_case(c);
+    const bool letter = small >= 'a' && small <= 'z';
+    if ((!letter || (small != c && before == lower_case(before))) && !words.back().empty()) {
+      words.emplace_back();
+    }
+    words.back() += letter ? std::string(1, small) : std::string();
+    before = c;
+  }
+  return words;
+}
+
+/// What logs keep of a sensor beside its samples: PX4's `gyro_integral_dt`, `accel_count`, `gyro_x_var`. Counts of an
+/// axis may be raw samples.
+bool is_beside_samples(std::string_view name) {
+  constexpr std::array<std::string_view, 17> kWords{
+      "dt",      "time",     "timestamp", "timestamps", "temp",   "temperature", "clip", "clipping", "integral",
+      "counter", "variance", "var",       "std",        "stddev", "status",      "id",   "count"};
+  const std::vector<std::string> words = words_of(name);
+  const bool axis = std::any_of(words.begin(), words.end(), [](const auto& word) { return axis_index(word); });
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return std::find(kWords.begin(), kWords.end(), word) != kWords.end() && !(axis && word == "count");
+  });
+}
+
 /// Whether a name speaks of a gyroscope or an accelerometer, though not which axis: `gyro`, `acc_l_x`.
 bool sounds_inertial(std::string_view name) {
   const std::string lower = lower_case(name);
+  if (is_beside_samples(name)) {
+    return false;
+  }
   const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
   if (lower.starts_with("absolute")) {  // the length of the vector beside its axes, as phyphox writes it
     return false;

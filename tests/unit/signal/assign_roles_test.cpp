@@ -251,6 +251,21 @@ TEST(AssignRoles, TakesTheLetterOfATemperatureForNoTime) {
   EXPECT_EQ(failure(assign_roles({}, {"gx", "t (furlong)"})), "unknown_unit column=t (furlong) unit=furlong");
 }
 
+TEST(AssignRoles, TakesTheTemperatureOfASensorWhereNothingElseIsOne) {
+  const auto alone = assign_roles({}, {"gx", "gyro_temp", "accel_temp"});
+  ASSERT_TRUE(alone) << alone.error().message;
+  EXPECT_EQ(described(*alone->at(1)), "temperature [-]");
+  EXPECT_EQ(described(*alone->at(2)), "unspecified [-]");
+  const auto beside = assign_roles({}, {"gyro_temp_c", "T(\u00b0)", "gx", "temp (degC)"});
+  ASSERT_TRUE(beside) << beside.error().message;
+  EXPECT_EQ(described(*beside->at(0)), "unspecified [-]");
+  EXPECT_EQ(described(*beside->at(1)), "unspecified [-]");
+  EXPECT_EQ(described(*beside->at(3)), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("gyroTemperature (\u00b0C)")), "temperature [degC]");
+  EXPECT_EQ(described(infer_role("gyroTimestamp_sinceReboot(s)")), "time [s]");
+  EXPECT_EQ(described(infer_role("gyro_z_temp")), "unspecified [-]");
+}
+
 TEST(AssignRoles, TakesCountsInTheNameOfASensorForNoUnitOfTime) {
   for (const char* const name : {"gz [digits]", "gz [LSBs]", "gz (digit)", "gz [LSBS]"}) {
     const auto roles = assign_roles({}, {"gx", name});

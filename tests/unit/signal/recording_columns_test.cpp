@@ -84,6 +84,33 @@ TEST(RecordingColumns, TheLengthOfAVectorBesideItsAxesIsPassedOver) {
   EXPECT_TRUE(columns->use_of(2)->examined) << "which axis it is, its name does not say";
 }
 
+TEST(RecordingColumns, WhatALogKeepsBesideTheSamplesOfASensorIsPassedOver) {
+  // PX4's ulog2csv: intervals and relative stamps were characterised as sensors in unit 1.
+  const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
+  const ColumnNames beside{"gyro_integral_dt",
+                           "accelerometer_timestamp_relative",
+                           "accelerometer_integral_dt",
+                           "gyro_clipping",
+                           "accel_count",
+                           "gyro_x_var",
+                           "gyro_z_temp",
+                           "loggingSample(N)",
+                           "gyroTempRaw"};
+  ColumnNames names{"gyro_rad[0]"};
+  names.insert(names.end(), beside.begin(), beside.end());
+  const auto columns = RecordingColumns::read({}, names, samples);
+  ASSERT_TRUE(columns) << columns.error().message;
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    EXPECT_FALSE(columns->use_of(i)->examined) << names[i];
+    EXPECT_NE(columns->note_of_skipped().find("'" + names[i] + "'"), std::string::npos) << names[i];
+  }
+  // What may be the samples themselves is not.
+  const auto raw = RecordingColumns::read({}, {"gyro_rad[0]", "gyro_x_count", "acc_l_x (count)", "gyro"}, samples);
+  ASSERT_TRUE(raw) << raw.error().message;
+  EXPECT_EQ(raw->note_of_skipped(), "");
+  EXPECT_TRUE(raw->use_of(1)->examined);
+}
+
 TEST(RecordingColumns, SayThatTheUnitOfATemperatureIsNotKnown) {
   const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
   const auto columns = RecordingColumns::read({}, {"gx (deg/s)", "temp (F)"}, samples);
