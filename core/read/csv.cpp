@@ -156,7 +156,7 @@ Status CsvDecoder::take_lines(std::string_view lines) {
   const char* p = lines.data();
   const char* const end = p + lines.size();
   while (p < end) {
-    if (!names_.empty() && blank_run_ == 0 && !units_follow_) {
+    if (!names_.empty() && blank_run_ == 0 && !units_follow_ && dialect_.clocks.empty()) {
       p = (this->*fast_)(p, end);
       if (filled_ == batch_.size()) {
         if (auto status = flush(); !status) {
@@ -320,7 +320,7 @@ Status CsvDecoder::begin(const CsvFirstLine& first) {
     return fail(names.error());
   }
   names_ = std::move(*names);
-  cells_ = CsvCells(names_, dialect_.decimal_comma);
+  cells_ = CsvCells(names_, dialect_.decimal_comma, dialect_.clocks);
   ColumnLayout layout;
   layout.has_header = first.named;
   layout.names = names_;

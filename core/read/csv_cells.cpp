@@ -27,8 +27,23 @@ Error fault_of(std::string_view cell, Missing why, const std::string& column, st
 
 }  // namespace
 
-CsvCells::CsvCells(ColumnNames names, bool decimal_comma)
-    : names_(std::move(names)), decimal_comma_(decimal_comma), texts_(names_.size()) {}
+CsvCells::CsvCells(ColumnNames names, bool decimal_comma, const std::vector<std::size_t>& clocks)
+    : names_(std::move(names)), decimal_comma_(decimal_comma), texts_(names_.size()) {
+  for (const std::size_t column : clocks) {
+    clocks_.try_emplace(column);
+  }
+}
+
+double CsvCells::time_in(std::string_view cell, Clock& clock, std::uint64_t line) {
+  constexpr double kDay = 86400.0;
+  const auto time_s = text::seconds_of_day(cell);
+  if (!time_s) {
+    return missing_sample(cell.empty() ? Missing::Empty : Missing::Text, line);
+  }
+  clock.days += *time_s < clock.last_s - 0.5 * kDay ? 1 : 0;
+  clock.last_s = *time_s;
+  return clock.days * kDay + *time_s;
+}
 
 double CsvCells::number_in(std::string_view cell, std::uint64_t line) const {
   if (cell.empty()) {
@@ -49,10 +64,12 @@ double CsvCells::number_in(std::string_view cell, std::uint64_t line) const {
 }
 
 double CsvCells::take(std::string_view cell, std::size_t column, std::uint64_t line) {
-  const double value = number_in(cell, line);
+  const auto clock = clocks_.find(column);
+  const double value = clock == clocks_.end() ? number_in(cell, line) : time_in(cell, clock->second, line);
   if (!std::isnan(value)) {
     any_number_ = true;
-    dates_ = dates_ || (cell.size() > 10 && cell[4] == '-' && cell[7] == '-');
+    dates_ = dates_ || (clock == clocks_.end() && cell.size() > 10 &&
+                        (cell.find(':') != std::string_view::npos || cell[8] == 'T'));
     return value;
   }
   const Missing why = why_missing(value).why;
@@ -70,6 +87,10 @@ double CsvCells::take(std::string_view cell, std::size_t column, std::uint64_t l
 void CsvCells::note(std::uint64_t rows, ColumnSink& sink) const {
   if (dates_) {
     sink.note("Dates are read as seconds since 1970-01-01 UTC.");
+  }
+  for (const auto& [column, clock] : clocks_) {
+    sink.note("Times of day in column '" + names_[column] + "' are read as seconds since midnight" +
+              (clock.days > 0 ? ", " + with_count(clock.days, "midnight") + " passed" : "") + ".");
   }
   for (std::size_t column = 0; column < texts_.size(); ++column) {
     if (texts_[column].count > 0) {

@@ -50,6 +50,15 @@ void join_units(std::vector<std::string>& cells, std::size_t width) {
   }
 }
 
+/// The name of a column of dates or times of day with the unit that they get; a form, `(hh:mm:ss)`, is none.
+void say_seconds(std::string& name) {
+  const std::size_t open = name.find_last_of("([");
+  if (open != std::string::npos && name.find(':', open) != std::string::npos) {
+    name = text::trim(name.substr(0, open));
+  }
+  name += name.empty() || name.back() == ')' ? "" : " (s)";
+}
+
 }  // namespace
 
 CsvFirstLine read_first_line(std::string_view line, const text::Dialect& dialect, ColumnSink& sink) {
@@ -72,9 +81,11 @@ CsvFirstLine read_first_line(std::string_view line, const text::Dialect& dialect
   for (std::size_t i = 0; i < std::min(cells.size(), dialect.units.size()); ++i) {
     cells[i] += dialect.units[i].empty() ? "" : " (" + dialect.units[i] + ")";
   }
-  for (const std::size_t column : dialect.dates) {  // as numbers they are seconds, and their name has to say so
-    if (column < cells.size() && !cells[column].empty() && cells[column].back() != ')') {
-      cells[column] += " (s)";
+  for (const auto* const columns : {&dialect.dates, &dialect.clocks}) {
+    for (const std::size_t column : *columns) {  // as numbers they are seconds, and their name has to say so
+      if (column < cells.size()) {
+        say_seconds(cells[column]);
+      }
     }
   }
   return first;

@@ -255,6 +255,21 @@ std::vector<std::size_t> find_dates(const Reading& reading, std::size_t row) {
   return dates;
 }
 
+/// Columns that hold a time of day in every row from the given line on.
+std::vector<std::size_t> find_clocks(const Reading& reading, std::size_t row) {
+  std::vector<std::size_t> clocks;
+  for (std::size_t i = 0; row < reading.lines.size() && i < reading.lines[row].cells.size(); ++i) {
+    const bool clock = std::all_of(
+        reading.lines.begin() + static_cast<std::ptrdiff_t>(row), reading.lines.end(), [&](const Cells& line) {
+          return line.cells.size() != reading.lines[row].cells.size() || seconds_of_day(line.cells[i]).has_value();
+        });
+    if (clock) {
+      clocks.push_back(i);
+    }
+  }
+  return clocks;
+}
+
 std::string_view comment_text(std::string_view line) {
   const std::size_t start = line.find_first_not_of("#/% \t");
   return start == std::string_view::npos ? std::string_view{} : line.substr(start);
@@ -401,9 +416,11 @@ Dialect find_dialect(std::string_view text, bool whole) {
   dialect.preamble_line = start > 0 ? head.content.front().number : 0;
   dialect.preamble_text = start > 0 ? std::string(trim(head.content.front().text)) : "";
   dialect.has_names = !is_row(reading->lines[start]);
+  dialect.units = dialect.has_names ? find_units(*reading, start) : std::vector<std::string>{};
+  const std::size_t row = start + (dialect.has_names ? 1 : 0) + (dialect.units.empty() ? 0 : 1);
+  dialect.clocks = find_clocks(*reading, row);
   if (dialect.has_names) {
-    dialect.units = find_units(*reading, start);
-    dialect.dates = find_dates(*reading, start + (dialect.units.empty() ? 1 : 2));
+    dialect.dates = find_dates(*reading, row);
   } else {
     dialect.names = find_commented_names(head, *reading);
   }

@@ -23,6 +23,7 @@ struct Dialect {
   bool has_names = false;            ///< `first_line` holds the names
   std::vector<std::string> units;    ///< of a second header line, which follows the names; empty without one
   std::vector<std::size_t> dates;    ///< columns in which the first row holds a date and time
+  std::vector<std::size_t> clocks;   ///< columns in which every row seen holds a time of day
   std::vector<std::string> names;    ///< of a comment line above a table without names; empty without one
   std::size_t preamble_lines = 0;    ///< lines above the table that are neither blank nor comments: `Fs,100`
   std::uint64_t preamble_line = 0;   ///< the first of them, from 1

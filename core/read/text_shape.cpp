@@ -168,9 +168,46 @@ std::optional<int> zone_of(std::string_view text) {
   return (text[0] == '-' ? -1 : 1) * (3600 * hours + 60 * minutes);
 }
 
+/// The fraction of a second that begins at `at` with a point; `at` is then behind it.
+double fraction_at(std::string_view text, std::size_t& at) {
+  double fraction = 0.0;
+  if (at < text.size() && text[at] == '.') {
+    double place = 0.1;
+    for (++at; at < text.size() && decimal::is_digit(text[at]); ++at, place *= 0.1) {
+      fraction += place * (text[at] - '0');
+    }
+  }
+  return fraction;
+}
+
+/// `20250614T211702.5` as `2025-06-14T21:17:02.5`; any other text as it is.
+std::string with_marks(std::string_view text) {
+  std::string date(text);
+  if (date.size() >= 15 && date[8] == 'T' && digits_at(date, 0, 8) >= 0 && digits_at(date, 9, 6) >= 0) {
+    date.insert(13, ":").insert(11, ":").insert(6, "-").insert(4, "-");
+  }
+  return date;
+}
+
 }  // namespace
 
-std::optional<double> seconds_of_date(std::string_view text) {
+std::optional<double> seconds_of_day(std::string_view text) {
+  const std::size_t hours = text.find(':') == 1 ? 1 : 2;
+  const int hour = digits_at(text, 0, hours);
+  const int minute = digits_at(text, hours + 1, 2);
+  const int second = digits_at(text, hours + 4, 2);
+  if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 60 || text[hours] != ':' ||
+      text[hours + 3] != ':') {
+    return std::nullopt;
+  }
+  std::size_t at = hours + 6;
+  const double fraction = fraction_at(text, at);
+  return at == text.size() ? std::optional(3600 * hour + 60 * minute + second + fraction) : std::nullopt;
+}
+
+std::optional<double> seconds_of_date(std::string_view written) {
+  const std::string date_and_time = with_marks(written);
+  const std::string_view text = date_and_time;
   const int year = digits_at(text, 0, 4);
   const int month = digits_at(text, 5, 2);
   const int day = digits_at(text, 8, 2);
@@ -180,18 +217,12 @@ std::optional<double> seconds_of_date(std::string_view text) {
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   if (year < 1900 || month < 0 || day < 0 || !date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 ||
-      second < 0 || second > 60 || text[4] != '-' || text[7] != '-' || (text[10] != ' ' && text[10] != 'T') ||
-      text[13] != ':' || text[16] != ':') {
+      second < 0 || second > 60 || (text[4] != '-' && text[4] != '/') || text[7] != text[4] ||
+      (text[10] != ' ' && text[10] != 'T') || text[13] != ':' || text[16] != ':') {
     return std::nullopt;
   }
-  double fraction = 0.0;
   std::size_t at = 19;
-  if (at < text.size() && text[at] == '.') {
-    double place = 0.1;
-    for (++at; at < text.size() && decimal::is_digit(text[at]); ++at, place *= 0.1) {
-      fraction += place * (text[at] - '0');
-    }
-  }
+  const double fraction = fraction_at(text, at);
   const auto zone = zone_of(text.substr(at));
   if (!zone) {
     return std::nullopt;

@@ -33,9 +33,12 @@ enum class Shape {
 [[nodiscard]] std::string excerpt(std::string_view cell);
 
 /// Seconds since 1970-01-01 UTC of a date and time as ISO 8601 writes it: `2025-06-14 21:17:02+00:00`,
-/// `2025-06-14T21:17:02.5Z`; without a zone it is UTC. Nothing for any other text, nor for a day that the
-/// calendar does not have.
+/// `2025-06-14T21:17:02.5Z`, `20250614T211702.5`, also with slashes, `2025/06/14 21:17:02`; without a zone it is UTC.
+/// Nothing for any other text, nor for a day that the calendar does not have.
 [[nodiscard]] std::optional<double> seconds_of_date(std::string_view text);
+
+/// Seconds since midnight of a time of day, `23:59:50`, `9:05:03.250`; nothing for any other text.
+[[nodiscard]] std::optional<double> seconds_of_day(std::string_view text);
 
 /// `text` as UTF-8: unchanged if it is, else every byte read as ISO 8859-1.
 [[nodiscard]] std::string to_utf8(std::string_view text);

@@ -14,10 +14,17 @@ namespace driftlab {
 /// Stated and measured rates may differ by this much: more is another rate, not a clock error.
 inline constexpr double kRateTolerance = 0.01;
 
-/// Of a recording with neither a time column nor a stated rate; `guess`: a column that looks like one.
-[[nodiscard]] inline tl::unexpected<Error> neither_time_nor_rate(const std::optional<TimeGuess>& guess = {}) {
+/// Of a recording with neither a time column nor a stated rate; `guess`: a column that looks like one; `of_text`: one
+/// that is the time by its name and holds text.
+[[nodiscard]] inline tl::unexpected<Error> neither_time_nor_rate(const std::optional<TimeGuess>& guess = {},
+                                                                 const std::string& of_text = {}) {
   std::string message =
-      "There is no time column and no stated rate: give rate_hz, or name the time column (columns NAME=time:s).";
+      of_text.empty()
+          ? "There is no time column and no stated rate: give rate_hz, or name the time column (columns NAME=time:s)."
+          : "The cells of column '" + of_text +
+                "' are text that is not read as time, and there is no stated rate: give rate_hz, or name another time "
+                "column (columns NAME=time:s). Read as time are numbers, dates such as 2025-03-01 23:59:50.5 or "
+                "2025/03/01T23:59:50Z, and times of day such as 23:59:50.5.";
   if (guess) {
     message += " Column '" + guess->column + "' rises as a time at " + short_text(guess->rate_hz) +
                " Hz does: " + guess->column + "=time:" + guess->unit.symbol + ".";

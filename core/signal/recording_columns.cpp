@@ -134,10 +134,15 @@ std::optional<ReferenceColumn> RecordingColumns::reference_of(Quantity sensor, s
   return angle ? std::optional(ReferenceColumn{*angle, true}) : std::nullopt;
 }
 
+std::string RecordingColumns::time_of_text() const {
+  const auto index = find(Quantity::Time);
+  return index && !time() ? name(*index) : std::string();
+}
+
 std::string RecordingColumns::note_of_time() const {
   const auto index = find(Quantity::Time);
-  if (index && !time()) {
-    return "The column '" + name(*index) + "' holds text and is not used as time.";
+  if (const std::string text = time_of_text(); !text.empty()) {
+    return "The column '" + text + "' holds text and is not used as time.";
   }
   return index && !guessed_ && !time_stated_
              ? "No column is stated to be the time; '" + name(*index) + "' is taken for it by its name."

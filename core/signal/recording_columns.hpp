@@ -64,6 +64,8 @@ class RecordingColumns {
   [[nodiscard]] std::optional<std::size_t> time() const;
   /// A column that is a time by its numbers, where none is by its name.
   [[nodiscard]] std::optional<TimeGuess> guessed_time() const { return guess_time(names_, roles_, column_); }
+  /// The column that would be the time() but for its text; empty: none.
+  [[nodiscard]] std::string time_of_text() const;
   /// The reference of a sensor along an axis: its own column, else for a rate the angle's.
   [[nodiscard]] std::optional<ReferenceColumn> reference_of(Quantity sensor, std::string_view axis) const;
 

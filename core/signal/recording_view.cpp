@@ -167,7 +167,7 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
                                 ViewUse use, const Passed& passed) {
   const auto time = columns.time();
   if (!time && !spec.rate_hz) {
-    return neither_time_nor_rate(columns.guessed_time());
+    return neither_time_nor_rate(columns.guessed_time(), columns.time_of_text());
   }
   if (time && columns.unit(*time).dimension != Dimension::Time && !spec.rate_hz) {
     return time_without_unit(columns.name(*time), columns.guessed_time());

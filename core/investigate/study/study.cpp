@@ -178,7 +178,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
     return grid;
   }
   if (!spec.rate_hz) {
-    return neither_time_nor_rate(columns.guessed_time());
+    return neither_time_nor_rate(columns.guessed_time(), columns.time_of_text());
   }
   TimeGrid grid;
   grid.dt_s = 1.0 / *spec.rate_hz;

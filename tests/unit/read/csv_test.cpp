@@ -271,6 +271,42 @@ TEST(Csv, ReadsDatesAsSeconds) {
   EXPECT_EQ(hole(decode_bytes("time,gx\n2025-13-14 21:17:02,1\n"), 0, 0), "text@2");
 }
 
+TEST(Csv, ReadsDatesWithSlashesOrWithoutMarks) {
+  const Outcome outcome =
+      decode_bytes("time,gx\n2025/06/14 21:17:02,1\n2025/06/14T21:17:03.5Z,2\n20250614T211704.250,3\n");
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(column(outcome, 0), ElementsAre(1749935822.0, 1749935823.5, 1749935824.25));
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("time (s)", "gx"));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("seconds since 1970")));
+  for (const char* const text : {"2025/06-14 21:17:02", "14.06.2025 21:17:02", "06/14/2025 09:17:02 PM",
+                                 "20250614T2117", "20251314T211704", "2025/06/14"}) {
+    EXPECT_EQ(hole(decode_bytes("time,gx\n" + std::string(text) + ",1\n"), 0, 0), "text@2") << text;
+  }
+}
+
+TEST(Csv, ReadsTimesOfDayAsSecondsSinceMidnight) {
+  const Outcome outcome =
+      decode_bytes("Time,gx\n23:59:59.250,1\n23:59:59.75,2\n00:00:00.25,3\n0:00:01,4\n23:59:59,5\n00:00:00,6\n");
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(column(outcome, 0), ElementsAre(86399.25, 86399.75, 86400.25, 86401.0, 172799.0, 172800.0));
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("Time (s)", "gx"));
+  EXPECT_THAT(outcome.decoded.notes,
+              ElementsAre("Times of day in column 'Time (s)' are read as seconds since midnight, 2 midnights passed."));
+  EXPECT_THAT(decode_bytes("t [hh:mm:ss],gx\n12:00:00,1\n12:00:01,2\n").decoded.names, ElementsAre("t (s)", "gx"));
+  EXPECT_THAT(column(decode_bytes("12:00:00.5,1.5\n12:00:01.5,2\n"), 0), ElementsAre(43200.5, 43201.5)) << "no names";
+  // Where not every cell is one, none is read as one; nor is what only looks like one.
+  EXPECT_EQ(hole(decode_bytes("time,gx\n12:00:00,1\nlate,2\n"), 0, 0), "text@2");
+  for (const char* const text : {"24:00:00", "12:60:00", "12:00", "00:01.500", "12:00:00 PM", "12.00.00"}) {
+    EXPECT_EQ(hole(decode_bytes("time,gx\n" + std::string(text) + ",1\n"), 0, 0), "text@2") << text;
+  }
+  // A column that is one in the rows that were looked at has a missing time where it later is none.
+  std::string late = "time,gx\n";
+  for (int i = 0; i < 100; ++i) {
+    late += "12:00:" + std::to_string(10 + i / 10) + "." + std::to_string(i % 10) + ",1\n";
+  }
+  EXPECT_EQ(hole(decode_bytes(late + "7.5,2\n"), 0, 100), "text@102");
+}
+
 TEST(Csv, SaysHowItReadADialect) {
   EXPECT_THAT(decode_bytes("t;gx\n0,5;1,25\n").decoded.notes, ElementsAre(HasSubstr("decimal comma")));
   EXPECT_THAT(decode_bytes("t,gx\ns,deg/s\n1,2\n").decoded.notes, ElementsAre(HasSubstr("units")));

@@ -1,6 +1,7 @@
 #include "core/signal/recording_columns.hpp"
 
 #include "core/signal/missing.hpp"
+#include "core/signal/no_rate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,11 @@ TEST(RecordingColumns, TimeOfTextIsNoTimeUnlessItWasStated) {
   ASSERT_TRUE(guessed);
   EXPECT_FALSE(guessed->time());
   EXPECT_NE(guessed->note_of_time().find("'time' holds text"), std::string::npos);
+  EXPECT_EQ(guessed->time_of_text(), "time");
+  const Error refusal = neither_time_nor_rate(guessed->guessed_time(), guessed->time_of_text()).value();
+  EXPECT_EQ(refusal.message.find("The cells of column 'time' are text that is not read as time"), 0U);
+  EXPECT_NE(refusal.message.find("give rate_hz"), std::string::npos);
+  EXPECT_NE(refusal.message.find("23:59:50.5"), std::string::npos);
   RecordingSpec spec;
   spec.columns["time"] = {Quantity::Time, "", *parse_unit("s")};
   const auto stated = RecordingColumns::read(spec, {"time"}, samples);
