@@ -129,15 +129,20 @@ std::string_view trim(std::string_view text) {
                                          : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// Cuts a bracketed end off `name` and returns what was inside; empty if there is none.
+/// Cuts a bracketed end off `name` and returns what was inside, further brackets too; empty if there is none.
 std::string_view take_bracket(std::string_view& name) {
   name = trim(name);
   if (name.size() < 2 || (name.back() != ')' && name.back() != ']')) {
     return {};
   }
-  const std::size_t open = name.rfind(name.back() == ')' ? '(' : '[');
-  if (open == std::string_view::npos) {
-    return {};
+  const char closing = name.back();
+  const char opening = closing == ')' ? '(' : '[';
+  std::size_t open = name.size() - 1;
+  for (int depth = 1; depth > 0;) {
+    if (open-- == 0) {
+      return {};
+    }
+    depth += name[open] == closing ? 1 : name[open] == opening ? -1 : 0;
   }
   const std::string_view inside = name.substr(open + 1, name.size() - open - 2);
   name = trim(name.substr(0, open));
@@ -444,6 +449,12 @@ Status check_bracketed_unit(std::string_view written) {
 std::string unknown_unit_of_temperature(std::string_view name) {
   const auto unknown = unknown_unit(name);
   return unknown && unknown->quantity == Quantity::Temperature ? unknown->symbol : std::string();
+}
+
+std::string unread_unit(std::string_view name) {
+  const std::string_view bracket = take_bracket(name);
+  const bool index = bracket.find_first_not_of("0123456789") == std::string_view::npos;
+  return index || states_no_unit(bracket) || known_unit(bracket) ? std::string() : std::string(bracket);
 }
 
 bool states_unit(std::string_view name) {

@@ -53,6 +53,10 @@ namespace driftlab {
 /// True where a known unit stands in brackets behind the name, whatever the name is.
 [[nodiscard]] bool states_unit(std::string_view name);
 
+/// What stands in brackets behind a name, whatever it is, and is no known unit, no word for raw numbers, no zone and no
+/// index; empty where nothing does.
+[[nodiscard]] std::string unread_unit(std::string_view name);
+
 /// What stands in brackets behind the name of a temperature and is no known unit of one, `F` of `temp (F)`, `°` of
 /// `T(°)`; empty for any other name.
 [[nodiscard]] std::string unknown_unit_of_temperature(std::string_view name);

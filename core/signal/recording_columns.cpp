@@ -218,6 +218,10 @@ Result<ColumnUse> RecordingColumns::use_of(std::size_t index, const Passed& pass
                          "' does not say which sensor and axis it is, so its unit is not read and is 1.",
                      {}};
   }
+  if (const std::string unread = guessed_ ? unread_unit(name(index)) : ""; !unread.empty()) {
+    return ColumnUse{
+        true, "The unit '" + unread + "' of column '" + name(index) + "' is not understood; its unit is 1.", {}};
+  }
   return ColumnUse{true, "The unit of column '" + name(index) + "' is not stated; its unit is 1.", {}};
 }
 

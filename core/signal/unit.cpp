@@ -109,7 +109,16 @@ constexpr std::array kLookalikes{
     Alias{"**", "^"},
 };
 
-/// `rad s^-1`, `rad·s⁻¹`, `m*s^-2`, `m.s-2` as a quotient; of characters that look alike one.
+/// `m/(s^2)` without its brackets.
+void open_denominator(std::string& text) {
+  const std::size_t open = text.find("/(s");
+  if (open != std::string::npos && text.find(')') + 1 == text.size()) {
+    text.pop_back();
+    text.erase(open + 1, 1);
+  }
+}
+
+/// `rad s^-1`, `rad·s⁻¹`, `m*s^-2`, `m.s-2`, `m/(s^2)` as a quotient; of characters that look alike one.
 std::string as_quotient(std::string_view written) {
   std::string text(written);
   for (const Alias& lookalike : kLookalikes) {
@@ -119,6 +128,7 @@ std::string as_quotient(std::string_view written) {
       at += lookalike.symbol.size();
     }
   }
+  open_denominator(text);
   for (const std::string_view dot : {"·", "⋅", "*", "."}) {
     const std::size_t at = text.rfind(dot);
     if (at != std::string::npos && text.substr(at + dot.size()).starts_with("s")) {

@@ -201,6 +201,19 @@ TEST(InferRole, TakesTheQuantityFromTheUnitAndTheAxisFromTheName) {
   }
 }
 
+TEST(InferRole, ReadsAUnitWithBracketsOfItsOwn) {
+  // The bracket was opened at its last sign, and "s^2)" was no unit.
+  EXPECT_EQ(described(infer_role("Acceleration X (m/(s^2))")), "specific_force x [m/s^2]");
+  EXPECT_EQ(described(infer_role("acc_z [m/(s\u00b2)]")), "specific_force z [m/s^2]");
+  EXPECT_EQ(described(infer_role("gyro x (deg/(s))")), "angular_rate x [deg/s]");
+  EXPECT_EQ(described(infer_role("accelerometerAccelerationX(G)")), "specific_force x [g]");
+  EXPECT_EQ(described(infer_role("X (m/(s^2))")), "specific_force x [m/s^2]");
+  EXPECT_EQ(described(infer_role("gx [131 LSB/(deg/s)]")), "angular_rate x [" + unit("131 LSB/(deg/s)").symbol + "]");
+  EXPECT_EQ(described(infer_role("acc (x) (g)")), "specific_force x [g]");
+  EXPECT_EQ(described(infer_role("acc x g)")), "unspecified [-]");
+  EXPECT_EQ(failure(assign_roles({}, {"gx", "acc x (m/(h^2))"})), "unknown_unit column=acc x (m/(h^2)) unit=m/(h^2)");
+}
+
 TEST(AssignRoles, PrefersThePlainNameToTheOneOfATool) {
   const auto roles = assign_roles({}, {"acc_x (g)", "linear_acceleration_x (g)", "gyro[0]", "gyro_y", "gyro[1]"});
   ASSERT_TRUE(roles) << roles.error().message;

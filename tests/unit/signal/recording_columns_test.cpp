@@ -140,6 +140,20 @@ TEST(RecordingColumns, DoNotSayThatAUnitIsNotStatedWhereItIs) {
   EXPECT_EQ(columns->use_of(2)->note, "The unit of column 'acc_l_z [LSB]' is not stated; its unit is 1.");
 }
 
+TEST(RecordingColumns, NameAUnitThatIsNotUnderstood) {
+  // "The unit of column 'motionUserAccelerationX(G)' is not stated".
+  const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
+  const auto columns = RecordingColumns::read(
+      {}, {"motionUserAccelerationX(G)", "acc_l_x [furlong]", "gyro[7]", "acc_l_y (raw)"}, samples);
+  ASSERT_TRUE(columns) << columns.error().message;
+  EXPECT_EQ(columns->use_of(0)->note,
+            "The unit 'G' of column 'motionUserAccelerationX(G)' is not understood; its unit is 1.");
+  EXPECT_EQ(columns->use_of(1)->note,
+            "The unit 'furlong' of column 'acc_l_x [furlong]' is not understood; its unit is 1.");
+  EXPECT_EQ(columns->use_of(2)->note, "The unit of column 'gyro[7]' is not stated; its unit is 1.");
+  EXPECT_EQ(columns->use_of(3)->note, "The unit of column 'acc_l_y (raw)' is not stated; its unit is 1.");
+}
+
 TEST(StatedRate, IsTheConditionsOwn) {
   EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
   const Condition turning = *parse_condition("constant_rate:z:9:rad/s");
