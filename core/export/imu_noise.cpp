@@ -6,6 +6,8 @@
 #include "core/fit/fit_report.hpp"
 #include "core/process/model.hpp"
 #include "core/signal/condition.hpp"
+#include "core/signal/number.hpp"
+#include "core/signal/significant.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,9 @@
 
 namespace driftlab {
 namespace {
+
+/// A Gauss-Markov process that forgets within fewer sample intervals is no bias (core/export/imu_noise.hpp).
+constexpr double kFewestBiasSteps = 10.0;
 
 std::optional<double> times(const std::optional<double>& value, double factor) {
   return value ? std::optional(*value * factor) : std::nullopt;
@@ -118,6 +123,29 @@ void add_markov_from_walk(AxisNoise& axis) {
   axis.correlation_s = {axis.duration_s, std::nullopt, std::nullopt, false, why};
 }
 
+/// `4.12 ms` or `2.5 s`.
+std::string duration_text(double seconds) {
+  return seconds < 1.0 ? significant(1e3 * seconds) + " ms" : significant(seconds) + " s";
+}
+
+/// Why the process of the fit `WN+GM` is no bias; empty: it is one.
+std::string no_bias(const AxisNoise& axis, double sigma, double time_s) {
+  const double steps = time_s * axis.rate_hz;
+  if (steps >= kFewestBiasSteps) {
+    return "";
+  }
+  const double at_zero = 2.0 * sigma * sigma * time_s;  // its density at frequency zero
+  const bool held = axis.density.value && *axis.density.value * *axis.density.value >= 0.5 * at_zero;
+  return "The process that the fit WN+GM finds has a correlation time of " + duration_text(time_s) + ", " +
+         significant(steps) + " sample intervals: so fast it is noise of the readings and no bias, which must last " +
+         "for " + short_text(kFewestBiasSteps) + " of them." +
+         (held ? " The density at low frequencies holds what it adds." : "");
+}
+
+std::optional<double> inverse(double rate) {
+  return rate > 0.0 && std::isfinite(rate) ? std::optional(1.0 / rate) : std::nullopt;
+}
+
 void add_markov(Replicates& stack, AxisNoise& axis) {
   const auto fit = fit_of(stack, "WN+GM");
   const FittedParameter* const sigma = fit ? find(*fit, "gauss_markov", "sigma") : nullptr;
@@ -128,9 +156,12 @@ void add_markov(Replicates& stack, AxisNoise& axis) {
     return;
   }
   const Estimate& rate = *beta->estimate;
+  if (const std::string why = no_bias(axis, sigma->estimate->value, 1.0 / rate.value); !why.empty()) {
+    axis.bias_sd = axis.correlation_s = without(why);
+    return;
+  }
   axis.bias_sd = figure_of(*sigma->estimate, "joint fit WN+GM");
-  axis.correlation_s = {1.0 / rate.value, finite(1.0 / rate.ci95.high), finite(1.0 / rate.ci95.low), false,
-                        "joint fit WN+GM"};
+  axis.correlation_s = {1.0 / rate.value, inverse(rate.ci95.high), inverse(rate.ci95.low), false, "joint fit WN+GM"};
 }
 
 /// The recordings at rest, or those of the first condition there is.

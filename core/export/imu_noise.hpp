@@ -14,6 +14,14 @@
 /// best model is (core/fit/ieee952_coefficients.hpp): what a filter integrates. Where that is refused, the N of the fit
 /// `WN+RW` stands for it and its remark says so.
 ///
+/// A Gauss-Markov process is a bias only where it is slow against the sampling: its correlation time T is ten sample
+/// intervals dt at least. What forgets faster is the noise of the readings as the sensor's own low-pass or an averaging
+/// colours it, and N has its density at low frequencies already: it counts processes faster than five samples, and
+/// never one slower than ten. As a bias it would count twice. Nor could the programs run it: they step a bias by
+/// 1 - dt/T, which gives it 1/(1 - dt/2T) of the variance stated, 5 % more at ten intervals, twice as much at one, and
+/// no bound at a half. Such a process is left out with the reason, and no walk stands for it: the fit `WN+RW` does
+/// not know of the colour.
+///
 /// A bias instability is no standard deviation of a bias, and is not exported as one.
 #include "core/campaign/sensor_sources.hpp"
 #include "core/signal/progress.hpp"

@@ -69,11 +69,14 @@ std::string export_comment(ExportSyntax syntax, const std::string& indent, std::
 }
 
 std::string interval_text(const NoiseFigure& figure) {
-  if (!figure.low && !figure.high) {
-    return "";
+  const std::string words = "95 % interval ";
+  if (figure.low && figure.high) {
+    return words + export_number(*figure.low) + " .. " + export_number(*figure.high);
   }
-  return "95 % interval " + (figure.low ? export_number(*figure.low) : std::string("open")) + " .. " +
-         (figure.high ? export_number(*figure.high) : std::string("open"));
+  if (figure.low) {
+    return words + "above " + export_number(*figure.low);
+  }
+  return figure.high ? words + "below " + export_number(*figure.high) : std::string();
 }
 
 /// What is known of the figures, of several each behind its axis.

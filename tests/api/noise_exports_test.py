@@ -88,6 +88,30 @@ class Exports(DaemonTest):
             self.assertIn(target, ("gtsam", "navego"))
             self.assertEqual(text.count("="), {"gtsam": 4, "navego": 9}[target])
 
+    def test_a_low_pass_of_the_readings_is_no_bias_by_either_way(self) -> None:
+        """A reading keeps a fifth of the one before: a correlation time of 0.62 samples, which stood as the bias beside all of the noise."""
+        import random
+        source = random.Random(5)
+        value, lines = 0.0, ["gz [deg/s]"]
+        for _ in range(8000):
+            value = 0.2 * value + source.gauss(0, 0.1)
+            lines.append(f"{value:.6f}")
+        (self.folder / "coloured.csv").write_text("\n".join(lines) + "\n", "utf-8")
+        recording = self.expect(201, self.daemon.upload((self.folder / "coloured.csv").read_bytes(), device="coloured", rate_hz=100)).json
+        self.daemon.finished(self.expect(202, self.daemon.characterise(recording["id"])).json["id"])
+        for target, names in (("kf-gins", ("imunoise/gbstd", "imunoise/corrtime")), ("navego", ("imu.gb_dyn", "imu.gb_corr", "imu.gb_psd")),
+                              ("gnss-ins-sim", ("gyro_b_stability", "gyro_b_corr")), ("gazebo", ()), ("isaac", ("GYROSCOPE_BIAS_STD",))):
+            with self.subTest(target=target):
+                direct = self.driftlab("export", "--target", target, "coloured.csv", "--rate-hz", "100")
+                self.assertEqual(direct.returncode, 0, direct.stderr)
+                answer = self.expect(200, self.daemon.get(f"/v1/exports/{target}?device=coloured", Accept="application/json")).json
+                served = self.driftlab("export", "--target", target, "--server", self.server, "--device", "coloured").stdout
+                self.assertEqual(re.sub(r"recording rec_\w+,", "recording coloured,", served), direct.stdout)
+                left_out = [gap for gap in answer["gaps"] if "so fast it is noise of the readings" in gap]
+                self.assertLessEqual(set(names), {gap.partition(" ")[0] for gap in left_out}, answer["gaps"])
+                self.assertEqual(len(left_out), 6 if target == "gazebo" else len(names), "each axis of a figure in SDF")
+                self.assertIn("The density at low frequencies holds what it adds.", left_out[0])
+
     def test_says_in_a_sentence_what_cannot_be_exported(self) -> None:
         for arguments, words in ((("--target", "kaliber", "six.csv"), "There is no export target 'kaliber'"), (("--target", "kalibr"), "Name a recording"),
                                  (("--target", "kalibr", "absent.csv", "--rate-hz", "100"), "absent.csv"), (("--target", "px4", "--server", self.server), "--device")):

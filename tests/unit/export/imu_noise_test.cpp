@@ -75,6 +75,61 @@ TEST(ImuNoise, WritesAWalkAsAGaussMarkovBiasThatGrowsAsFastWhereThatIsNotIdentif
   }
 }
 
+void expect_no_bias(const Model& truth, std::uint64_t seed) {
+  const auto imu = imu_noise_of("unit", one_axis(simulated(truth, seed, 16384)), {});
+  ASSERT_TRUE(imu);
+  const AxisNoise& axis = imu->gyroscope.axes.at(0);
+  EXPECT_FALSE(axis.bias_sd.value) << *axis.bias_sd.value << " " << axis.bias_sd.remark;
+  EXPECT_FALSE(axis.correlation_s.value) << *axis.correlation_s.value;
+  EXPECT_NE(axis.bias_sd.remark.find("sample intervals: so fast it is noise of the readings"), std::string::npos)
+      << axis.bias_sd.remark;
+  EXPECT_EQ(axis.bias_sd.remark, axis.correlation_s.remark);
+}
+
+TEST(ImuNoise, SaysOfANoiseThatAFilterColoursThatNHoldsIt) {
+  // As the readings of the recording of eight headings are: a correlation time of half a sample.
+  const auto imu =
+      imu_noise_of("unit", one_axis(simulated({*make_process("gauss_markov", {0.2, 200.0})}, 1, 16384)), {});
+  ASSERT_TRUE(imu);
+  const AxisNoise& axis = imu->gyroscope.axes.at(0);
+  ASSERT_TRUE(axis.density.value) << axis.density.remark;
+  EXPECT_TRUE(axis.bias_sd.remark.ends_with(" The density at low frequencies holds what it adds."))
+      << axis.bias_sd.remark;
+}
+
+TEST(ImuNoise, KeepsAProcessThatLastsForTenSamples) {
+  const Model truth{*make_process("white_noise", {0.02}), *make_process("gauss_markov", {0.2, 5.0})};
+  const auto imu = imu_noise_of("unit", one_axis(simulated(truth, 1, 16384)), {});
+  ASSERT_TRUE(imu);
+  const NoiseFigure& time = imu->gyroscope.axes.at(0).correlation_s;
+  EXPECT_NEAR(time.value.value_or(0.0), 0.2, 0.05) << time.remark;
+}
+
+TEST(ImuNoise, TakesNoLowPassOfTheReadingsForABias) {
+  // Correlation times of 0.6, 2 and 6 samples, alone and beside white noise.
+  for (const double beta : {160.0, 50.0, 16.0}) {
+    SCOPED_TRACE(beta);
+    expect_no_bias({*make_process("gauss_markov", {0.2, beta})}, 1);
+    expect_no_bias({*make_process("white_noise", {0.005}), *make_process("gauss_markov", {0.2, beta})}, 2);
+  }
+}
+
+TEST(ImuNoise, LeavesTheEndOfAnIntervalOpenThatTheRecordDoesNotBound) {
+  // A bias that forgets in a quarter of the record: its correlation time has no upper end in some such records.
+  int open = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Model truth{*make_process("white_noise", {0.02}), *make_process("gauss_markov", {0.02, 0.05})};
+    const auto imu = imu_noise_of("unit", one_axis(simulated(truth, seed, 8192)), {});
+    ASSERT_TRUE(imu);
+    const NoiseFigure& time = imu->gyroscope.axes.at(0).correlation_s;
+    ASSERT_TRUE(time.value) << time.remark;
+    EXPECT_TRUE(!time.low || (*time.low > 0.0 && *time.low <= *time.value)) << seed;
+    EXPECT_TRUE(!time.high || *time.high >= *time.value) << seed << ": " << *time.high;
+    open += time.remark == "joint fit WN+GM" && !time.high ? 1 : 0;
+  }
+  EXPECT_GE(open, 1);
+}
+
 TEST(ImuNoise, SaysAnUpperLimitWhereARecordShowsNoWalk) {
   const auto imu = imu_noise_of("unit", one_axis(simulated({*make_process("white_noise", {0.02})}, 5, 16384)), {});
   ASSERT_TRUE(imu);

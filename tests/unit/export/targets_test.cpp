@@ -270,6 +270,24 @@ TEST(ExportTargets, LeaveOutWhatTheRecordingDoesNotGiveAndSayWhy) {
   EXPECT_NE(text.find("identified about no axis"), std::string::npos) << text;
 }
 
+TEST(ExportTargets, SayOfAnOpenIntervalWhichSideIsKnown) {
+  ImuNoise imu = example();
+  imu.gyroscope.axes[0].correlation_s.high.reset();
+  imu.gyroscope.axes[1].correlation_s.low.reset();
+  imu.gyroscope.axes[2].correlation_s = {540.0, std::nullopt, std::nullopt, false, "joint fit"};
+  const std::string text = export_to_text(**find_export_target("navego"), imu);
+  std::string line;  // the comments run over line ends
+  for (const char c : text) {
+    line += c == '\n' || c == '%' ? ' ' : c;
+  }
+  for (std::size_t at = line.find("  "); at != std::string::npos; at = line.find("  ")) {
+    line.erase(at, 1);
+  }
+  EXPECT_NE(line.find("x: 95 interval above 189.0; joint fit. y: 95 interval below 363.0; joint fit. z: joint fit."),
+            std::string::npos)
+      << line;
+}
+
 TEST(ExportTargets, PreferWhatIsIdentifiedToALimitThatIsLarger) {
   ImuNoise imu = example();
   imu.gyroscope.axes[2].walk = {1.0, {}, {}, true, "limit"};
