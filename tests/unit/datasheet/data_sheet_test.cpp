@@ -21,6 +21,29 @@ TEST(SheetsNamedIn, KnowsOrderCodesFromOtherSensors) {
   EXPECT_TRUE(sheets_named_in("").empty());
 }
 
+TEST(SheetsNamedIn, GivesAFirstMtiTheFullScaleOfItsOwnCode) {
+  const auto limit = [](std::string_view name) {
+    const auto found = sheets_named_in(name);
+    return found.size() == 1 ? found.front()->find(Quantity::SpecificForce)->scales.back().limit : 0.0;
+  };
+  EXPECT_EQ(limit("Xsens MTi-28A53G35"), 50.0);
+  EXPECT_EQ(limit("MTi-28A53G35-2"), 50.0);
+  EXPECT_EQ(limit("MTi-28A33G35"), 17.0);
+  for (const char* const other : {"MTi-28", "MTi-28A", "MTi-28A83G25", "MTx-28A53G25"}) {
+    EXPECT_TRUE(sheets_named_in(other).empty()) << other << ": its full scales stand in no sheet here";
+  }
+  EXPECT_NE(find_data_sheet("MTi-28").error().message.find("begin so: MTi-28A53G35, MTi-28A33G35."), std::string::npos);
+}
+
+TEST(SheetsNamedIn, KnowsTheSixHundredsWithTheirLetters) {
+  for (const char* const name : {"MTi-630R", "MTi-680G", "mti 670g", "MTi-610R-2A8G4", "MTi-630-AHRS"}) {
+    const auto found = sheets_named_in(name);
+    ASSERT_EQ(found.size(), 1U) << name;
+    EXPECT_EQ(found.front()->name, "MTi 600-series") << name;
+  }
+  EXPECT_TRUE(sheets_named_in("MTi-6301").empty());
+}
+
 TEST(KnownSensor, TakesTheOneOfTheQuantityWhereADeviceHasTwoChips) {
   const std::array<std::string, 1> phone{"GT-I9100 (L3G4200D, BMA220)"};
   EXPECT_EQ(known_sensor(phone, Quantity::AngularRate)->sheet->name, "L3G4200D");
@@ -54,7 +77,7 @@ TEST(FindDataSheet, SaysWhatIsKnownAndWhatIsAmbiguous) {
 TEST(FindDataSheet, NamesTheLongerOnesOfANameThatIsCutShort) {
   const auto family = find_data_sheet("Xsens MTi");
   ASSERT_FALSE(family);
-  EXPECT_NE(family.error().message.find("begin so: MTi-28A53G35, MTi 1-series,"), std::string::npos)
+  EXPECT_NE(family.error().message.find("begin so: MTi-28A53G35, MTi-28A33G35, MTi 1-series,"), std::string::npos)
       << family.error().message;
   EXPECT_EQ(family.error().message.find("MPU-6050"), std::string::npos) << family.error().message;
   EXPECT_NE(find_data_sheet("MTi-G").error().message.find("begin so: MTi-G-700, MTi-G-710."), std::string::npos);
