@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -43,6 +44,36 @@ Result<DeviceSensors> device_of(const std::string& file) {
   return DeviceSensors{std::filesystem::path(file).stem().string(), std::move(*sensors)};
 }
 
+/// The wavelet variances of what a device recorded, which no other device shares; none of columns that do not move.
+std::vector<std::vector<double>> variances_of(const DeviceSensors& device) {
+  std::vector<std::vector<double>> variances;
+  for (const SensorSources& sensor : device.sensors) {
+    for (const TableSource& source : sensor.sources) {
+      const std::vector<double>& one = source.channel.haar.variance;
+      if (std::any_of(one.begin(), one.end(), [](double value) { return value > 0.0; })) {
+        variances.push_back(one);
+      }
+    }
+  }
+  return variances;
+}
+
+/// Whether the last device is one of those before, which would count twice.
+Status check_copy(const std::vector<std::string>& files, const std::vector<DeviceSensors>& devices) {
+  const std::size_t last = devices.size() - 1;
+  const auto variances = variances_of(devices[last]);
+  for (std::size_t i = 0; i < last; ++i) {
+    if (variances.empty() || variances_of(devices[i]) != variances) {
+      continue;
+    }
+    const std::string fault = files[i] == files[last]
+                                  ? "The file " + files[i] + " is named twice"
+                                  : "The files " + files[i] + " and " + files[last] + " hold the same samples";
+    return fail(ErrorCode::InvalidArgument, fault + "; each device counts once.");
+  }
+  return {};
+}
+
 Exit run_here(const PopulationFlags& flags) {
   std::vector<DeviceSensors> devices;
   for (const std::string& file : flags.files) {
@@ -51,6 +82,9 @@ Exit run_here(const PopulationFlags& flags) {
       return complain(device.error());
     }
     devices.push_back(std::move(*device));
+    if (auto checked = check_copy(flags.files, devices); !checked) {
+      return complain(checked.error());
+    }
   }
   const auto wanted = quantity_of_sensor(flags.sensor);
   const PopulationReport report = compare_devices(flags.model.empty() ? "these devices" : flags.model, devices,

@@ -70,6 +70,12 @@ class Populations(DaemonTest):
                 Path(folder, f"{name}.json").write_text(done.stdout, "utf-8")
                 files.append(f"{name}.json")
             local = json.loads(self.driftlab("population", *files, "--model", "Probe 7", "--format", "json", folder=folder).stdout)
+            Path(folder, "copy.json").write_bytes(Path(folder, files[0]).read_bytes())
+            for again, said in ((files[0], f"The file {files[0]} is named twice; each device counts once."),
+                                (f"./{files[0]}", f"The files {files[0]} and ./{files[0]} hold the same samples; each device counts once."),
+                                ("copy.json", f"The files {files[0]} and copy.json hold the same samples; each device counts once.")):
+                done = self.driftlab("population", files[0], files[1], again, folder=folder)
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"driftlab: {said}\n"))
         self.assertEqual((local["rows"], local["summary"]), (found["rows"], found["summary"]))
 
     def test_bad_requests_are_answered_with_the_repair(self) -> None:
