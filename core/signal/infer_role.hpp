@@ -15,9 +15,8 @@ namespace driftlab {
 ///
 ///   time             t, ts, time, timestamp, seconds_elapsed, millis; also with a unit behind `_` (time_ms, t_us);
 ///                    with a unit of time alone epoch, epoc, elapsed
-///   temperature      temp, temperature, also of a sensor (gyro_temp); t with a unit of temperature or ° in brackets: T
-///   (°C), T(°) angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity ang_rate gyro_rotation
-///   Drehrate
+///   temperature      temp, temperature, also of a sensor (gyro_temp); t with a unit of temperature or ° in brackets
+///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity ang_rate gyro_rotation Drehrate
 ///                    Winkelgeschwindigkeit, with x, y or z before or behind
 ///   specific force   a acc accel accelerometer acceleration f specific_force accelerometer_acceleration
 ///                    Beschleunigung, likewise
