@@ -144,7 +144,8 @@ void add_plot(CLI::App& app, Command& chosen) {
   const auto flags = std::make_shared<PlotFlags>();
   add_inputs(*command, flags);
   command->add_option("--output", flags->output, "File (.svg, .png); - draws in the terminal")->capture_default_str();
-  command->add_option("--channel", flags->channel, "Only this channel, or this parameter of a table");
+  command->add_option("--channel", flags->channel,
+                      "Only this channel, this axis of a regression run, or this parameter of a table");
   command->callback([flags, &chosen] { chosen = [flags] { return run_plot(*flags); }; });
 }
 

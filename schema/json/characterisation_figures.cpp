@@ -171,10 +171,10 @@ std::vector<NamedFigure> figures_of_characterisation(const Json& document, const
     const auto id = recording.at("id").get<std::string>();
     for (const StoredChannel& one : stored_channels_from_json(recording.at("channels"))) {
       const std::string& name = one.told.channel;
-      if ((channel.empty() || name == channel) && !one.allan.tau_s.empty()) {
+      if (is_asked_for(name, channel) && !one.allan.tau_s.empty()) {
         std::string of_all = id;
         of_all.append("-").append(name);
-        figures.push_back({word(several ? of_all : name), allan_figure(one, id)});
+        figures.push_back({word(several ? of_all : name), allan_figure(one, id), name});
       }
     }
   }

@@ -186,25 +186,25 @@ std::vector<NamedFigure> figures_of_investigation(const Json& document, const st
   std::vector<NamedFigure> figures;
   for (const Json& series : document.value("figures", Json::array())) {
     const auto name = series.at("channel").get<std::string>();
-    if (!channel.empty() && name != channel) {
+    if (!is_asked_for(name, channel)) {
       continue;
     }
     const std::string unit = printed_unit(series.value("unit", ""));
-    figures.push_back({word(name + "-allan"), allan(series, name, unit)});
-    figures.push_back({word(name + "-spectrum"), spectrum(series, name)});
-    figures.push_back({word(name + "-wavelet"), wavelets(series, name)});
-    figures.push_back({word(name + "-course"), course(series, name, unit)});
+    figures.push_back({word(name + "-allan"), allan(series, name, unit), name});
+    figures.push_back({word(name + "-spectrum"), spectrum(series, name), name});
+    figures.push_back({word(name + "-wavelet"), wavelets(series, name), name});
+    figures.push_back({word(name + "-course"), course(series, name, unit), name});
     if (series.contains("spectrogram")) {
-      figures.push_back({word(name + "-spectrogram"), spectrogram(series, name)});
+      figures.push_back({word(name + "-spectrogram"), spectrogram(series, name), name});
     }
   }
   for (const Json& found : document.value("unnamed", Json::array())) {
     const auto name = found.at("channel").get<std::string>();
-    if (channel.empty() || name == channel) {
+    if (is_asked_for(name, channel)) {
       figures.push_back(
           {word(name + "-" + found.at("kind").get<std::string>() + "-" + found.at("against").get<std::string>() + "-" +
                 (found.contains("recordings") ? found.at("recordings").at(0).get<std::string>() : "all")),
-           profile(found, name)});
+           profile(found, name), name});
     }
   }
   return figures;

@@ -1,6 +1,7 @@
 #include "schema/json/regression_figures.hpp"
 
 #include "core/analysis/drawn_values.hpp"
+#include "core/campaign/regression/report.hpp"
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
@@ -15,9 +16,15 @@ using figure::Plot;
 using figure::ScaleKind;
 using figure::Series;
 
+namespace {
+
+std::string axis_name(const Json& unit) { return unit.value("sensor", "") + " " + unit.value("axis", ""); }
+
+}  // namespace
+
 std::string unit_name(const Json& unit) {
   const Json condition = unit.value("condition", Json(nullptr));
-  const std::string name = unit.value("sensor", "") + " " + unit.value("axis", "");
+  const std::string name = axis_name(unit);
   return name + (condition.is_string() ? ", " + condition.get<std::string>() : "");
 }
 
@@ -65,7 +72,9 @@ std::optional<Plot> arms_plot(const Json& tests) {
 std::vector<NamedFigure> figures_of_regression(const Json& document, const std::string& axis) {
   std::vector<NamedFigure> figures;
   for (const Json& unit : document.at("units")) {
-    if (!axis.empty() && unit.value("axis", "") != axis) {
+    const std::string subject = regression::short_name(axis_name(unit));
+    if (!is_asked_for(unit.value("axis", ""), axis) && axis != subject && axis != axis_name(unit) &&
+        axis != unit_name(unit)) {
       continue;
     }
     Series change{.name = "change", .detail = "95 %, all at once"};
@@ -109,7 +118,7 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
     if (arms) {
       figure.plots.push_back(std::move(*arms));
     }
-    figures.push_back({word(unit_name(unit)), std::move(figure)});
+    figures.push_back({word(unit_name(unit)), std::move(figure), subject});
   }
   return figures;
 }

@@ -109,7 +109,7 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
                     .sentence = name + " under each condition with its 95 % interval, from zero.",
                     .source = "driftlab " DRIFTLAB_VERSION + (by.empty() ? "" : ", " + by)};
       figure.plots.push_back(std::move(plot));
-      figures.push_back({kinds.size() > 1 ? word(key + "-" + dynamics.kind) : word(key), std::move(figure)});
+      figures.push_back({kinds.size() > 1 ? word(key + "-" + dynamics.kind) : word(key), std::move(figure), key});
     }
   }
   return figures;
@@ -130,7 +130,8 @@ std::vector<NamedFigure> figures_of_tables(const Json& document, const std::stri
     const std::string of_sensor = sensors.size() > 1 ? text_member(table, "sensor") + "-" : "";
     const std::string axis = of_sensor + text_member(table, "axis");
     for (NamedFigure& figure : figures_of_table(table, parameter)) {
-      figures.push_back({axis.empty() ? figure.name : word(axis + "-" + figure.name), std::move(figure.figure)});
+      figures.push_back({axis.empty() ? figure.name : word(axis + "-" + figure.name), std::move(figure.figure),
+                         std::move(figure.subject)});
     }
   }
   return figures;

@@ -238,6 +238,22 @@ class Plots(DaemonTest):
                 low, high = test[arm]["ci95"]
                 self.assertTrue(low < test[arm]["value"] < high, test)
 
+    def test_a_channel_is_named_with_its_unit_or_without_and_an_axis_with_its_sensor(self) -> None:
+        (self.folder / "units.csv").write_text((self.folder / "1.csv").read_text("utf-8").replace("gz [deg/s]", "gz (deg/s)"), "utf-8")
+        (self.folder / "units.json").write_text(self.said("characterise", "units.csv", "--rate-hz", "100", "--models", "WN", "--json"), "utf-8")
+        whole = self.said("plot", "units.json")
+        self.assertIn("gz (deg/s)", whole)
+        for name in ("gz", "gz (deg/s)"):
+            self.assertEqual(self.said("plot", "units.json", "--channel", name), whole)
+        (self.folder / "axis.json").write_text(self.said("regress", "--baseline", "1.csv", "2.csv", "--candidate", "6.csv", "--json"), "utf-8")
+        for name in ("z", "gyro z", "gyroscope z"):
+            self.assertEqual(self.said("plot", "axis.json", "--channel", name), self.said("plot", "axis.json"))
+        for document, known in (("units.json", "gz (deg/s)"), ("axis.json", "gyro z")):
+            done = subprocess.run([PROGRAM, "plot", document, "--channel", "g"], cwd=self.folder, capture_output=True, text=True,
+                                  timeout=PATIENCE_S, check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"The document has no figure of 'g'; it has figures of {known}.", done.stderr)
+
     def test_another_ending_and_a_document_without_a_figure_are_one_sentence(self) -> None:
         for arguments, words in ((("characterise", "1.csv", "--models", "WN", "--plot", "a.jpg"), "--plot: Figures are written as .svg and .png"),
                                  (("plot", "study.json", "--channel", "gq"), "no figure of 'gq'")):

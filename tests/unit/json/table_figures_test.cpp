@@ -68,6 +68,26 @@ TEST(TableFigures, TheTablesOfAllAxesAreDrawnByAxis) {
   EXPECT_FALSE(figures_of(all, "K"));
 }
 
+TEST(TableFigures, ANameThatIsNotThereIsAnsweredWithThoseThatAre) {
+  Json one = table("x", {row(kStatic, 0.1)});
+  one["columns"].push_back({{"key", "K"}, {"unit", "deg/h/sqrt(h)"}});
+  one["rows"][0]["values"]["K"] = {{"value", 2.0}, {"ci95", {1.0, 3.0}}};
+  const auto figures = figures_of({{"device", "one"}, {"tables", {one, table("y", {row(kStatic, 0.2)})}}}, "n");
+  ASSERT_FALSE(figures);
+  EXPECT_EQ(figures.error().message, "The document has no figure of 'n'; it has figures of N, K.");
+}
+
+TEST(IsAskedFor, ANameWithItsUnitOrWithout) {
+  EXPECT_TRUE(is_asked_for("gx (deg/s)", "gx"));
+  EXPECT_TRUE(is_asked_for("gx (deg/s)", "gx (deg/s)"));
+  EXPECT_TRUE(is_asked_for("Gyroscope x [rad/s]", "Gyroscope x"));
+  EXPECT_TRUE(is_asked_for("gx", ""));
+  EXPECT_FALSE(is_asked_for("gx (deg/s)", "g"));
+  EXPECT_FALSE(is_asked_for("gx (deg/s)", "gy"));
+  EXPECT_FALSE(is_asked_for("gyro x", "gyro")) << "x is no unit";
+  EXPECT_FALSE(is_asked_for("(x)", "x"));
+}
+
 TEST(TableFigures, TheTablesOfSeveralSensorsAreDrawnBySensorToo) {
   Json other = table("x", {row(kStatic, 0.1)});
   other["sensor"] = "accelerometer";
