@@ -76,8 +76,8 @@ Status leave_out_lines(const FileFlags& flags, Inputs& inputs) {
     if (!left) {
       return fail(left.error());
     }
-    std::fprintf(stderr, "driftlab: %s: %zu lines left out by --skip-lines, %zu by --comment.\n", file.path.c_str(),
-                 left->skipped, left->comments);
+    std::fprintf(stderr, "driftlab: %s: %s left out by --skip-lines, %zu by --comment.\n", file.path.c_str(),
+                 with_count(left->skipped, "line").c_str(), left->comments);
   }
   return {};
 }

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -30,11 +31,11 @@ struct Documented {
   std::optional<TabledCampaign> campaign = std::nullopt;  ///< of recordings characterised now
 };
 
-/// What is shown of a device: its parameter tables, or its newest recordings too.
-enum class DeviceShows { Tables, RecordingsToo };
+/// What becomes of a document. Of a device its parameter tables are drawn, and its newest recordings reported too.
+enum class Purpose { Draw, Report };
 
 /// What a daemon has stored of a device, or under an id.
-tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, DeviceShows shown) {
+tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, Purpose purpose) {
   if (flags.files.size() + (flags.file.device.empty() ? 0 : 1) != 1) {
     return tl::unexpected(Failure{{ErrorCode::InvalidArgument,
                                    "With --server name one thing that the daemon has stored: an id (rec_…, inv_… or "
@@ -42,7 +43,7 @@ tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, DeviceSho
                                    {}},
                                   Exit::BadInput});
   }
-  const auto device = shown == DeviceShows::Tables ? fetch_tables : fetch_device;
+  const auto device = purpose == Purpose::Draw ? fetch_tables : fetch_device;
   auto stored =
       flags.files.empty() ? device(flags.server, flags.file.device) : fetch_result(flags.server, flags.files.front());
   if (!stored) {
@@ -52,9 +53,9 @@ tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, DeviceSho
 }
 
 /// A document as it stands, or recordings characterised now, with the name of their device.
-tl::expected<Documented, Failure> document_of(const PlotFlags& flags, DeviceShows shown) {
+tl::expected<Documented, Failure> document_of(const PlotFlags& flags, Purpose purpose) {
   if (!flags.server.empty()) {
-    return stored_there(flags, shown);
+    return stored_there(flags, purpose);
   }
   if (flags.files.empty()) {
     return tl::unexpected(Failure{
@@ -77,6 +78,16 @@ tl::expected<Documented, Failure> document_of(const PlotFlags& flags, DeviceShow
       return Documented{device, {device}, std::move(*document)};
     }
   }
+  const auto document = std::find_if(flags.files.begin(), flags.files.end(),
+                                     [](const std::string& file) { return file.ends_with(".json"); });
+  if (flags.files.size() > 1 && document != flags.files.end()) {
+    return tl::unexpected(Failure{{ErrorCode::InvalidArgument,
+                                   "One document is " + std::string(purpose == Purpose::Draw ? "drawn" : "reported") +
+                                       " at a time, and it stands alone: " + *document + " is one of " +
+                                       std::to_string(flags.files.size()) + " files here.",
+                                   {}},
+                                  Exit::BadInput});
+  }
   auto inputs = read_inputs(flags.files, flags.file);
   if (!inputs) {
     return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
@@ -89,7 +100,7 @@ tl::expected<Documented, Failure> document_of(const PlotFlags& flags, DeviceShow
 }
 
 Exit run_plot(const PlotFlags& flags) {
-  const auto document = document_of(flags, DeviceShows::Tables);
+  const auto document = document_of(flags, Purpose::Draw);
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
@@ -98,7 +109,7 @@ Exit run_plot(const PlotFlags& flags) {
 }
 
 Exit run_report(const PlotFlags& flags) {
-  const auto document = document_of(flags, DeviceShows::RecordingsToo);
+  const auto document = document_of(flags, Purpose::Report);
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }

@@ -76,6 +76,21 @@ class Sentences(unittest.TestCase):
             self.refused(*arguments, "good.csv", words=("good.csv is no JSON document", wanted))
             self.refused(*arguments, "empty.csv", words=("empty.csv is empty", wanted))
 
+    def test_several_documents_are_reported_one_at_a_time(self) -> None:
+        for name in ("one.json", "two.json"):
+            (self.folder / name).write_text("{}", "utf-8")
+        for command, said in (("report", "One document is reported at a time"), ("plot", "One document is drawn at a time")):
+            self.refused(command, "one.json", "two.json", words=(said, "one.json is one of 2 files"))
+            self.refused(command, "good.csv", "two.json", words=(said, "two.json is one of 2 files"))
+
+    def test_lines_left_out_are_counted(self) -> None:
+        (self.folder / "banner.csv").write_text("12\n; ready\n" + GOOD, "utf-8")
+        for lines, counted in (("1", "1 line left out by --skip-lines, 1 by --comment."),
+                               ("2", "2 lines left out by --skip-lines, 0 by --comment.")):
+            done = self.driftlab("characterise", "banner.csv", "--models", "WN", "--skip-lines", lines, "--comment", ";")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"driftlab: banner.csv: {counted}\n", done.stderr)
+
     def test_a_file_that_is_not_there_is_named(self) -> None:
         for arguments in (("characterise",), ("plot",), ("report",), ("investigate",), ("convert", "--output", "x.csv"), ("population",), ("regress",), ("drive", "check")):
             self.refused(*arguments, "absent.csv", words=("absent.csv", "No such file"))
