@@ -140,11 +140,14 @@ Json to_json(const RecordingSpec& spec) {
   return document;
 }
 
-RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults,
+                                       FileMember file) {
   RecordingSpec spec;
   ObjectReader reader(document, pointer, faults);
   spec.id = reader.text("id").value_or("");
-  (void)reader.member("file");
+  if (file == FileMember::Ignored) {
+    (void)reader.member("file");
+  }
   spec.rate_hz = reader.real("rate_hz");
   if (spec.rate_hz && !is_sampling_rate(*spec.rate_hz)) {
     faults.add(reader.pointer("rate_hz"), ErrorCode::InvalidArgument, "The rate_hz must be from 1e-6 to 1e9.");

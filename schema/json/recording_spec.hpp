@@ -16,9 +16,14 @@ namespace driftlab {
 /// One recording without its file: id, rate_hz, columns, condition, trim. Members that were not stated are left out.
 [[nodiscard]] Json to_json(const RecordingSpec& spec);
 
-/// Reads the members of a recording; `file` is accepted and ignored (an upload carries its bytes itself), and so are
-/// labels, session and recorded_at (schema/json/recording_tags.hpp), whose faults are found nevertheless.
-[[nodiscard]] RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults);
+/// What becomes of the member `file` of a recording: an upload carries its bytes itself and ignores it, a stored
+/// recording has none.
+enum class FileMember { Ignored, Refused };
+
+/// Reads the members of a recording; labels, session and recorded_at are accepted and ignored
+/// (schema/json/recording_tags.hpp), and their faults found nevertheless.
+[[nodiscard]] RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults,
+                                                     FileMember file = FileMember::Ignored);
 
 /// `columns` of a query string or command line: `gz=angular_rate:z:deg/s,temp=temperature::degC,t=time::s`. A column is
 /// named as in the file, or by number from 0; axis and unit may be empty or left out. Errors: InvalidArgument,

@@ -48,6 +48,17 @@ class Patches(DaemonTest):
                 self.expect(400, self.daemon.request("PATCH", address, {**value, "colour": "red"}, {"If-Match": "*"}))
                 self.assertEqual(self.daemon.get(address).json, before.json)
 
+    def test_a_recording_has_a_name_of_its_user_and_no_file_there(self) -> None:
+        """Uploads take `id` for the user's name of the recording, beside its id, and ignore `file`; a stored recording has no such member."""
+        recording = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=2), device="named", rate_hz=100, columns=samples.GYRO_Z)).json
+        address = f"/v1/recordings/{recording['id']}"
+        problem = self.problem(400, "invalid_argument", self.daemon.request("PATCH", address, {"file": "other.csv"}, {"If-Match": "*"}))
+        [error] = problem["errors"]  # type: ignore[misc]
+        self.assertEqual(error["pointer"], "/file")
+        self.assertEqual(self.daemon.get(address).json, recording)
+        named = self.expect(200, self.daemon.request("PATCH", address, {"id": "rate-9-run-1"}, {"If-Match": "*"})).json
+        self.assertEqual((named["id"], named["metadata"]["id"]), (recording["id"], "rate-9-run-1"))
+
 
 if __name__ == "__main__":
     unittest.main()

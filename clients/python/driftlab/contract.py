@@ -3230,8 +3230,8 @@ class Recording(TypedDict):
 
 
 class RecordingChange(TypedDict):
+    # The user's name of the recording, not its id here.
     id: NotRequired[str | None]
-    file: NotRequired[str | None]
     rate_hz: NotRequired[float | None]
     columns: NotRequired[RecordingMembersColumns | None]
     stream: NotRequired[str | None]
