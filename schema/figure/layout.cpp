@@ -147,7 +147,7 @@ void add_linear_ticks(Scale& scale, double count) {
 
 Scale make_scale(const Axis& axis, const Range& domain, double from, double to) {
   Scale scale{axis.scale, domain.first, domain.second, from, to, axis.ticks, {}};
-  if (!axis.ticks.empty()) {
+  if (!axis.ticks.empty() || axis.bare) {
     return scale;
   }
   if (axis.scale == ScaleKind::Log) {

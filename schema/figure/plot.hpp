@@ -50,6 +50,7 @@ struct Axis {
   std::string name = {};  ///< with its unit
   std::optional<std::pair<double, double>> domain = {};
   std::vector<double> ticks = {};
+  bool bare = false;  ///< without ticks: where something lies along it says nothing
 };
 
 struct Note {

@@ -60,7 +60,7 @@ std::optional<double> place_of(const Json& condition, const Dynamics& dynamics) 
 figure::Axis axis_of(const Dynamics& dynamics, const Series& series) {
   const double far = figure::farthest_of(series);
   if (dynamics.kind.empty() || !(far > 0.0)) {
-    return figure::axis_about_zero("at rest", 1.0);
+    return {figure::ScaleKind::Linear, "at rest", std::pair{-1.0, 1.0}, {}, true};
   }
   return figure::axis_about_zero("|" + replaced(dynamics.kind, "_", " ") + "|, " + printed_unit(dynamics.unit), far);
 }

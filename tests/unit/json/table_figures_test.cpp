@@ -1,5 +1,6 @@
 #include "schema/json/table_figures.hpp"
 
+#include "schema/figure/drawing.hpp"
 #include "schema/json/report_page.hpp"
 
 #include <gmock/gmock.h>
@@ -41,6 +42,13 @@ TEST(TableFigures, ADeviceAtRestHasAnAxisThatSaysSo) {
   const figure::Plot& plot = figures[0].figure.plots.at(0);
   EXPECT_EQ(plot.x.name, "at rest");
   EXPECT_GT(plot.x.domain->second, 0.5) << "zero has room around it";
+  EXPECT_EQ(plot.x.domain->first, -plot.x.domain->second) << "and stands in the middle";
+  const std::string drawn = figure::to_svg(figures[0].figure);
+  EXPECT_NE(drawn.find(">at rest<"), std::string::npos);
+  EXPECT_NE(drawn.find(">0.04<"), std::string::npos) << "the heights have numbers";
+  for (const char* const number : {">0.2<", ">0.5<", ">0.8<", ">1<"}) {
+    EXPECT_EQ(drawn.find(number), std::string::npos) << number << ": a place at rest has none";
+  }
 }
 
 TEST(TableFigures, ConditionsOfOneKindStandInOneUnitAndOtherKindsApart) {
