@@ -1,7 +1,7 @@
 #include "schema/json/regression_figures.hpp"
 
 #include "core/analysis/drawn_values.hpp"
-#include "core/campaign/regression/report.hpp"
+#include "core/signal/short_name.hpp"
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
@@ -72,7 +72,7 @@ std::optional<Plot> arms_plot(const Json& tests) {
 std::vector<NamedFigure> figures_of_regression(const Json& document, const std::string& axis) {
   std::vector<NamedFigure> figures;
   for (const Json& unit : document.at("units")) {
-    const std::string subject = regression::short_name(axis_name(unit));
+    const std::string subject = short_sensor_name(axis_name(unit));
     if (!is_asked_for(unit.value("axis", ""), axis) && axis != subject && axis != axis_name(unit) &&
         axis != unit_name(unit)) {
       continue;

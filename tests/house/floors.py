@@ -69,8 +69,8 @@ CAMPAIGN_DOORS = {"core/campaign/" + name for name in (
 # Of core/signal these: the types of a recording, errors, progress, and how a number or a sentence is written. How columns
 # are read, times laid on a grid and channels surveyed is for the use cases to ask.
 SIGNAL_DOORS = {"core/signal/" + name for name in (
-    "angle.hpp", "column_unit.hpp", "condition.hpp", "find_column.hpp", "number.hpp", "progress.hpp", "quantity.hpp",
-    "recording.hpp", "result.hpp", "text.hpp", "with_count.hpp")}
+    "angle.hpp", "column_unit.hpp", "condition.hpp", "find_column.hpp", "name_list.hpp", "number.hpp", "progress.hpp", "quantity.hpp",
+    "recording.hpp", "result.hpp", "short_name.hpp", "text.hpp", "with_count.hpp")}
 
 # Of these modules documents are about results, not about how they come about: a result's types, the functions that tell it in
 # other words (deviations, equivalents, a mean efficiency), names and units of processes, a model that somebody gives. A use case's

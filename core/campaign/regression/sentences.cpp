@@ -1,5 +1,6 @@
 /// The sentences of a regression run, made once for every output (spec/regression.md, section 9).
 #include "core/campaign/regression/report.hpp"
+#include "core/signal/short_name.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -190,14 +191,7 @@ std::string duration_text(double seconds) {
   return seconds >= 120.0 ? written("%.3g min", seconds / 60.0) : written("%.2g s", seconds);
 }
 
-std::string short_name(const std::string& unit) {
-  for (const auto& [whole, part] : {std::pair{"gyroscope", "gyro"}, std::pair{"accelerometer", "accel"}}) {
-    if (unit.starts_with(whole)) {
-      return part + unit.substr(std::string_view(whole).size());
-    }
-  }
-  return unit;
-}
+std::string short_name(const std::string& unit) { return short_sensor_name(unit); }
 
 ToldTest furthest_beyond(const Report& report) {
   return largest(
