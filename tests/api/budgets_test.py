@@ -339,10 +339,11 @@ class TokensHaveBudgets(unittest.TestCase):
 
 class WhatIsOldGoes(unittest.TestCase):
     def test_recordings_and_ended_jobs_after_their_days(self) -> None:
-        """Two days later (the rows are dated back): gone with their files, and what is younger stays."""
+        """Two days later (the rows are dated back): gone with their files, and what is younger stays, or named by a study."""
         data = Path(self.enterContext(tempfile.TemporaryDirectory())) / "data"
         with Daemon(data) as daemon:
-            old, young = (daemon.upload(stamped_csv(200 + 100 * n), device=f"d{n}").json for n in range(2))
+            old, named, young = (daemon.upload(stamped_csv(200 + 100 * n), device=f"d{n}").json for n in range(3))
+            self.assertEqual(daemon.post("/v1/studies", {"device": {"id": "d1"}, "recordings": [{"recording": named["id"]}]}).status, 201)
             jobs = []
             for seed in range(2):
                 jobs.append(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": seed}).json["id"])
@@ -350,7 +351,8 @@ class WhatIsOldGoes(unittest.TestCase):
                 self.assertEqual(daemon.finished(jobs[-1])["state"], "cancelled")
             self.assertEqual(daemon.terminate(), 0)
             before = int((time.time() - 2 * 86400) * 1e6)
-            daemon.change(f"UPDATE recordings SET created_at = {before} WHERE id = ?", old["id"])
+            for recording in (old, named):
+                daemon.change(f"UPDATE recordings SET created_at = {before} WHERE id = ?", recording["id"])
             daemon.change(f"UPDATE jobs SET finished_at = {before} WHERE id = ?", jobs[0])
         blob = data / "blobs" / old["file"]["sha256"][:2] / old["file"]["sha256"]
         columns = data / "columns" / blob.parent.name / f"{blob.name}.columns"
@@ -358,12 +360,12 @@ class WhatIsOldGoes(unittest.TestCase):
             os.utime(file, (before / 1e6, before / 1e6))
         with Daemon(data) as daemon:  # by default everything stays
             time.sleep(1.0)
-            self.assertEqual(len(daemon.items("/v1/recordings")), 2)
+            self.assertEqual(len(daemon.items("/v1/recordings")), 3)
         with Daemon(data, arguments=("--budget", "keep_recordings_days=1", "--budget", "keep_jobs_days=1")) as daemon:
             until = time.monotonic() + 30
             while (blob.exists() or columns.exists()) and time.monotonic() < until:
                 time.sleep(0.05)
-            self.assertEqual([r["id"] for r in daemon.items("/v1/recordings")], [young["id"]])
+            self.assertEqual({r["id"] for r in daemon.items("/v1/recordings")}, {young["id"], named["id"]})
             self.assertFalse(blob.exists() or columns.exists(), "the space is free")
             self.assertEqual([daemon.get(f"/v1/jobs/{job}").status for job in jobs], [404, 200])
 
