@@ -81,7 +81,7 @@ class Recordings(DaemonTest):
         self.problem(422, "too_few_samples", self.daemon.request("PATCH", target, {"trim": {"start_s": 100}}, match))
         problem = self.problem(400, "invalid_argument", self.daemon.request("PATCH", target, {"rate": 3}, match))
         self.assertEqual([error["pointer"] for error in problem["errors"]], ["/rate"])
-        self.assertIn("known are id, file, rate_hz, columns, stream, condition, trim, calibration, labels, session, recorded_at", str(problem["errors"]))
+        self.assertIn("known are id, rate_hz, columns, stream, condition, trim, calibration, labels, session, recorded_at", str(problem["errors"]))
         self.assertEqual(self.daemon.get(target).json, before)
 
     def test_results_of_an_older_revision_leave_the_table(self) -> None:
