@@ -18,7 +18,7 @@ constexpr std::size_t kMostNames = 12;
 
 /// Why a document has no figure of a channel, with those that it has.
 std::string no_figure_of(const Json& document, const std::string& channel) {
-  std::string sentence = "The document has no figure of '" + channel + "'";
+  const std::string sentence = "The document has no figure of '" + channel + "'";
   const auto all = figures_of(document, "");
   if (!all) {
     return sentence + ".";
