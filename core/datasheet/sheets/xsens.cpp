@@ -13,27 +13,19 @@ constexpr std::array kForces50{FullScale{50.0}};
 constexpr std::array kForces10g{FullScale{10.0}};
 constexpr std::array kForces16g{FullScale{16.0}};
 
-constexpr std::array kFirstMti{SensorSheet{.quantity = Quantity::AngularRate,
-                                           .unit = "deg/s",
-                                           .scales = kRates300,
-                                           .noise_density = 0.05,
-                                           .place = "table 1"},
-                               SensorSheet{.quantity = Quantity::SpecificForce,
-                                           .unit = "m/s^2",
-                                           .scales = kForces50,
-                                           .noise_density = 0.002,
-                                           .place = "table 1"}};
+constexpr SensorSheet kFirstGyroscope{
+    .quantity = Quantity::AngularRate, .unit = "deg/s", .scales = kRates300, .noise_density = 0.05, .place = "table 1"};
+constexpr std::array kFirstMti{kFirstGyroscope, SensorSheet{.quantity = Quantity::SpecificForce,
+                                                            .unit = "m/s^2",
+                                                            .scales = kForces50,
+                                                            .noise_density = 0.002,
+                                                            .place = "table 1"}};
 /// Its accelerometer is another: the full scale of the first MTi stands in the name.
-constexpr std::array kFirstMtiOf17{SensorSheet{.quantity = Quantity::AngularRate,
-                                               .unit = "deg/s",
-                                               .scales = kRates300,
-                                               .noise_density = 0.05,
-                                               .place = "table 1"},
-                                   SensorSheet{.quantity = Quantity::SpecificForce,
-                                               .unit = "m/s^2",
-                                               .scales = kForces17,
-                                               .noise_density = 0.002,
-                                               .place = "table 1 and its amendments"}};
+constexpr std::array kFirstMtiOf17{kFirstGyroscope, SensorSheet{.quantity = Quantity::SpecificForce,
+                                                                .unit = "m/s^2",
+                                                                .scales = kForces17,
+                                                                .noise_density = 0.002,
+                                                                .place = "table 1 and its amendments"}};
 /// Noise and bias stability differ between the hardware revisions of the series, which the name does not tell.
 constexpr std::array kMti1Series{
     SensorSheet{
