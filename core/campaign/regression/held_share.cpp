@@ -26,10 +26,14 @@ struct Rounded {
   double mean_square = 0.0;
 };
 
+/// The share of equal neighbours where differences are N(0, s^2) [step] at every place between two steps: E(1 - |d|)+.
+double equal_of_differences(double s) {
+  return 2.0 * below(1.0 / s) - 1.0 - 2.0 * s * (density(0.0) - density(1.0 / s));
+}
+
 /// Differences d ~ N(0, s^2) [step] at every place between two steps: n + f steps become n with probability 1 - f.
 Rounded of_differences(double s) {
-  const double equal = 2.0 * below(1.0 / s) - 1.0 - 2.0 * s * (density(0.0) - density(1.0 / s));
-  Rounded rounded{equal, 0.0};
+  Rounded rounded{equal_of_differences(s), 0.0};
   const int far = static_cast<int>(std::ceil(8.0 * s)) + 1;
   for (int n = 0; n < far; ++n) {
     const double mass = 2.0 * (below((n + 1) / s) - below(n / s));
@@ -103,8 +107,7 @@ Bounds rounding_at(double mean_square) {
   constexpr double kMost = 6.0;
   constexpr std::size_t kPoints = 65;
   if (mean_square >= kMost) {
-    const double s = std::sqrt(mean_square - 1.0 / 6.0);
-    const double equal = 2.0 * below(1.0 / s) - 1.0 - 2.0 * s * (density(0.0) - density(1.0 / s));
+    const double equal = equal_of_differences(std::sqrt(mean_square - 1.0 / 6.0));
     return {equal, equal};
   }
   if (mean_square <= kLeast) {
