@@ -1,4 +1,5 @@
 /// The JUnit report of a regression run.
+#include "core/signal/short_name.hpp"
 #include "schema/text/regression.hpp"
 
 #include <set>
@@ -92,7 +93,7 @@ class TestSuite {
 };
 
 std::string name_of_test(const UnitReport& unit, const ScaleReport& test) {
-  return regression::short_name(unit.name) + " " +
+  return short_sensor_name(unit.name) + " " +
          (test.name.empty() ? "at " + regression::duration_text(test.test.tau_s) : test.name);
 }
 

@@ -1,4 +1,5 @@
 /// Figure and badge of a regression run, as SVG.
+#include "core/signal/short_name.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/figure/ratio_panels.hpp"
 #include "schema/text/printed.hpp"
@@ -14,7 +15,7 @@ using regression::ScaleReport;
 using regression::UnitReport;
 
 figure::RatioPanel panel_of(const UnitReport& unit) {
-  figure::RatioPanel panel{.name = regression::short_name(unit.name)};
+  figure::RatioPanel panel{.name = short_sensor_name(unit.name)};
   for (const ScaleReport& scale : unit.tests) {
     if (scale.name.empty()) {
       panel.points.push_back({.tau_s = scale.test.tau_s,
@@ -41,7 +42,7 @@ std::string badge_words(const regression::Report& report) {
   }
   if (report.verdict == regression::Verdict::Fail) {
     if (const regression::ToldTest worst = regression::furthest_beyond(report); worst.test != nullptr) {
-      return "worse: " + regression::short_name(worst.unit->name) + " " + regression::percent_text(worst.test->theta);
+      return "worse: " + short_sensor_name(worst.unit->name) + " " + regression::percent_text(worst.test->theta);
     }
     const auto failed = std::find_if(
         report.checks.begin(), report.checks.end(),

@@ -1,4 +1,5 @@
 /// Terminal text and Markdown page of a regression run.
+#include "core/signal/short_name.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/text/fields.hpp"
 #include "schema/text/regression.hpp"
@@ -58,8 +59,8 @@ std::string look_line(const Look& look) {
 
 std::string worst_row(const ToldTest& told) {
   const ScaleReport& test = *told.test;
-  return "| " + regression::short_name(told.unit->name) + " | " + test_place(test) + " | " + test_figures(test) +
-         " | " + std::string(name_of(test.outcome.finding)) + (test.gated ? "" : ", watched") + " |\n";
+  return "| " + short_sensor_name(told.unit->name) + " | " + test_place(test) + " | " + test_figures(test) + " | " +
+         std::string(name_of(test.outcome.finding)) + (test.gated ? "" : ", watched") + " |\n";
 }
 
 /// Where to find what a bounded list leaves out; empty where it holds everything.
@@ -102,7 +103,7 @@ std::string regression_to_text(const RegressReport& run) {
   for (std::size_t i = 0; i < std::min(kWorstTests, tests.size()); ++i) {
     std::array<char, 160> line{};
     const int length = std::snprintf(
-        line.data(), line.size(), "  %-10s %-22s %-36s %s%s\n", regression::short_name(tests[i].unit->name).c_str(),
+        line.data(), line.size(), "  %-10s %-22s %-36s %s%s\n", short_sensor_name(tests[i].unit->name).c_str(),
         test_place(*tests[i].test).c_str(), test_figures(*tests[i].test).c_str(),
         std::string(name_of(tests[i].test->outcome.finding)).c_str(), tests[i].test->gated ? "" : ", watched");
     text.append(line.data(), std::min(static_cast<std::size_t>(length), line.size() - 1));

@@ -105,8 +105,6 @@ struct ToldTest {
 [[nodiscard]] std::string interval_text(double theta, double lower, double upper);
 /// `0.32 s`, `20 s`, `5 min`.
 [[nodiscard]] std::string duration_text(double seconds);
-/// `gyro z`, `accel x`, short form of a unit's name.
-[[nodiscard]] std::string short_name(const std::string& unit);
 
 /// Writes verdict sentence, details, level and needs into a report that has everything else.
 void tell(Report& report);

@@ -45,7 +45,7 @@ ToldTest largest(const Report& report, const Is& is, const Score& score) {
 
 std::string worse_sentence(const ToldTest& told) {
   const ScaleReport& test = *told.test;
-  return short_name(told.unit->name) + (test.theta >= 0.0 ? " is worse: " : " changed: ") +
+  return short_sensor_name(told.unit->name) + (test.theta >= 0.0 ? " is worse: " : " changed: ") +
          interval_text(test.theta, test.outcome.lower, test.outcome.upper) + place_of(told) + ", margin " +
          written("%.3g %%.", percent_of(test.test.margin));
 }
@@ -77,7 +77,8 @@ bool is_on_the_margin(const ToldTest& open) {
 
 std::string needs_sentence(const Report& report, const ToldTest& open) {
   if (is_on_the_margin(open)) {
-    return short_name(open.unit->name) + " sits on the margin; no affordable recording decides; the margin does.";
+    return short_sensor_name(open.unit->name) +
+           " sits on the margin; no affordable recording decides; the margin does.";
   }
   const Needs& needs = report.comparison.needs;
   const std::string length = report.needed_length_s ? duration_text(*report.needed_length_s) : std::string();
@@ -98,7 +99,7 @@ std::string undecided_sentence(const Report& report, const ToldTest& open) {
   if (open.test == nullptr) {
     return head + "nothing could be compared.";
   }
-  return head + short_name(open.unit->name) +
+  return head + short_sensor_name(open.unit->name) +
          written(" could be up to %+.0f %% worse", percent_of(open.test->outcome.upper_one)) + place_of(open) +
          written(" (margin %.3g %%).", percent_of(open.test->test.margin));
 }
@@ -109,7 +110,7 @@ void note_structures(Report& report) {
       continue;
     }
     const bool moved = unit.structure[0] != unit.structure[1];
-    report.notes.push_back(short_name(unit.name) + ": " +
+    report.notes.push_back(short_sensor_name(unit.name) + ": " +
                            (moved ? "structure changed (" + unit.structure[0] + " to " + unit.structure[1] + ")"
                                   : "no fitted model describes both arms (" + unit.model + ")") +
                            ": parameters are not compared, scales are.");
@@ -124,7 +125,7 @@ void note_improvement(Report& report) {
     return;
   }
   const bool much = best.test->theta < -best.test->test.margin && best.test->test.tau_s <= 1.0;
-  report.notes.push_back(short_name(best.unit->name) + " improved: " +
+  report.notes.push_back(short_sensor_name(best.unit->name) + " improved: " +
                          interval_text(best.test->theta, best.test->outcome.lower, best.test->outcome.upper) +
                          place_of(best) + (much ? "; check filter bandwidth and scale." : "."));
 }
@@ -152,7 +153,7 @@ void note_trends(Report& report) {
     }
     told = one.unit;
     const std::string since = report.baseline.label.empty() ? "the baseline" : report.baseline.label;
-    report.notes.push_back(short_name(one.unit) + " drifts over " + std::to_string(one.trend.releases) +
+    report.notes.push_back(short_sensor_name(one.unit) + " drifts over " + std::to_string(one.trend.releases) +
                            " releases: " + interval_text(one.trend.slope, one.trend.ci95.low, one.trend.ci95.high) +
                            " a release, " + percent_text(one.trend.total) + " since " + since + ".");
   }
@@ -163,7 +164,7 @@ void note_robust(Report& report) {
   std::string units;
   for (const UnitReport& unit : report.units) {
     if (unit.robust) {
-      units += (units.empty() ? "" : ", ") + short_name(unit.name);
+      units += (units.empty() ? "" : ", ") + short_sensor_name(unit.name);
     }
   }
   if (!units.empty()) {
@@ -190,8 +191,6 @@ std::string duration_text(double seconds) {
   }
   return seconds >= 120.0 ? written("%.3g min", seconds / 60.0) : written("%.2g s", seconds);
 }
-
-std::string short_name(const std::string& unit) { return short_sensor_name(unit); }
 
 ToldTest furthest_beyond(const Report& report) {
   return largest(

@@ -2,6 +2,7 @@
 
 #include "core/campaign/regression/report.hpp"
 #include "core/process/distributions.hpp"
+#include "core/signal/short_name.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +47,7 @@ double welch_p(const ArmFigures& figures, double margin) {
 
 std::string moved(const std::string& unit, const ArmFigures& figures, const ShiftWords& words) {
   const double difference = figures.difference();
-  return short_name(unit) + ": the " + words.figure + " moved by " + (difference > 0.0 ? "+" : "") +
+  return short_sensor_name(unit) + ": the " + words.figure + " moved by " + (difference > 0.0 ? "+" : "") +
          words.text(difference, figures.gyroscope);
 }
 
