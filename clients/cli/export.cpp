@@ -38,13 +38,7 @@ std::optional<Json> as_characterisation(const std::vector<std::string>& files) {
   std::ostringstream text;
   text << stream.rdbuf();
   auto document = parse_json(text.str());
-  if (!document || !document->is_object()) {
-    return std::nullopt;
-  }
-  const Json recordings = document->value("recordings", Json(nullptr));
-  const bool characterised = recordings.is_array() && !recordings.empty() && recordings.front().is_object() &&
-                             recordings.front().contains("channels");
-  return characterised ? std::optional(std::move(*document)) : std::nullopt;
+  return document && is_characterisation(*document) ? std::optional(std::move(*document)) : std::nullopt;
 }
 
 /// Whether something of a recording can be exported, before minutes are spent on its columns. A calibration gives

@@ -7,6 +7,7 @@
 #include "core/analysis/compare_devices.hpp"
 #include "core/campaign/population_verdict.hpp"
 #include "schema/json/campaign_summary.hpp"
+#include "schema/json/characterisation.hpp"
 #include "schema/text/population.hpp"
 
 #include <CLI/CLI.hpp>
@@ -32,8 +33,7 @@ Result<DeviceSensors> device_of(const std::string& file) {
   if (!document) {
     return fail(document.error());
   }
-  const Json recordings = document->is_object() ? document->value("recordings", Json(nullptr)) : Json(nullptr);
-  if (!recordings.is_array() || recordings.empty() || !recordings.front().contains("channels")) {
+  if (!is_characterisation(*document)) {
     return fail(ErrorCode::InvalidArgument,
                 file + " is no result of `driftlab characterise --json`; make one for each device.");
   }

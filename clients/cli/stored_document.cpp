@@ -1,6 +1,7 @@
 #include "clients/cli/stored_document.hpp"
 
 #include "clients/cli/print_answer.hpp"
+#include "schema/json/characterisation.hpp"
 #include "schema/json/stored_member.hpp"
 
 #include <optional>
@@ -39,11 +40,6 @@ tl::expected<std::string, Failure> name_recordings(const std::string& server, Js
   return fetch_document(server, "/v1/devices/" + *devices.begin()).map([](const Json& device) {
     return text_member(device, "name");
   });
-}
-
-bool is_characterisation(const Json& document) {
-  const Json recordings = document.value("recordings", Json(nullptr));
-  return recordings.is_array() && !recordings.empty() && recordings.front().contains("channels");
 }
 
 tl::expected<StoredDocument, Failure> with_names(const std::string& server, Json document) {

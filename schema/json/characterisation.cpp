@@ -252,6 +252,12 @@ Json recording_document(const std::string& id, const RecordingSpec& spec, const 
               {"channels", std::move(channels)}};
 }
 
+bool is_characterisation(const Json& document) {
+  const auto recordings = document.find("recordings");
+  return recordings != document.end() && recordings->is_array() && !recordings->empty() &&
+         recordings->front().is_object() && recordings->front().contains("channels");
+}
+
 Json characterisation_document(std::vector<Json> recordings) {
   return Json{{"study", nullptr}, {"recordings", std::move(recordings)}};
 }

@@ -20,6 +20,9 @@ struct ChannelIdentity {
 [[nodiscard]] Json recording_document(const std::string& id, const RecordingSpec& spec, const Window& window,
                                       std::vector<Json> channels);
 
+/// Whether a document is one of these, with a recording at least; a study has `recordings` too, without channels.
+[[nodiscard]] bool is_characterisation(const Json& document);
+
 /// The whole document.
 [[nodiscard]] Json characterisation_document(std::vector<Json> recordings);
 

@@ -1,6 +1,7 @@
 #include "schema/json/report_page.hpp"
 
 #include "core/fit/characterise.hpp"
+#include "schema/json/characterisation.hpp"
 #include "schema/json/figures.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
@@ -9,8 +10,7 @@ namespace driftlab {
 namespace {
 
 std::string body_of(const Json& document) {
-  if (document.contains("recordings") && document["recordings"].is_array() && !document["recordings"].empty() &&
-      document["recordings"].front().contains("channels")) {
+  if (is_characterisation(document)) {
     const std::string recordings = page::characterisation_html(document);
     return !document.contains("tables") ? recordings
                                         : recordings + page::parameter_tables_html({{"tables", document.at("tables")}});
