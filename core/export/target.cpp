@@ -23,17 +23,27 @@ bool tells_more(const NoiseFigure& a, const NoiseFigure& b) {
   return a.limit ? *a.value < *b.value : *a.value > *b.value;
 }
 
+/// The axis whose figure tells the most; null without axes.
+const AxisNoise* most_telling(const SensorNoise& sensor, NoiseFigure AxisNoise::* member) {
+  const AxisNoise* found = nullptr;
+  for (const AxisNoise& axis : sensor.axes) {
+    found = found == nullptr || tells_more(axis.*member, found->*member) ? &axis : found;
+  }
+  return found;
+}
+
+NoiseFigure without_axes(const SensorNoise& sensor) {
+  NoiseFigure none;
+  none.remark = sensor.missing;
+  return none;
+}
+
 }  // namespace
 
 NoiseFigure largest(const SensorNoise& sensor, NoiseFigure AxisNoise::* member) {
-  if (sensor.axes.empty()) {
-    NoiseFigure none;
-    none.remark = sensor.missing;
-    return none;
-  }
-  const AxisNoise* found = &sensor.axes.front();
-  for (const AxisNoise& axis : sensor.axes) {
-    found = tells_more(axis.*member, found->*member) ? &axis : found;
+  const AxisNoise* const found = most_telling(sensor, member);
+  if (found == nullptr) {
+    return without_axes(sensor);
   }
   NoiseFigure figure = found->*member;
   if (sensor.axes.size() > 1 && figure.value) {
@@ -46,21 +56,23 @@ NoiseFigure largest(const SensorNoise& sensor, NoiseFigure AxisNoise::* member) 
 }
 
 std::vector<NoiseFigure> by_axis(const SensorNoise& sensor, NoiseFigure AxisNoise::* member) {
+  NoiseFigure AxisNoise::* const ruling = member == &AxisNoise::correlation_s ? &AxisNoise::bias_sd : member;
+  const AxisNoise* const other = most_telling(sensor, ruling);
   std::vector<NoiseFigure> figures;
   for (const char* const name : {"x", "y", "z"}) {
     const auto axis =
         std::find_if(sensor.axes.begin(), sensor.axes.end(), [&](const AxisNoise& one) { return one.axis == name; });
-    NoiseFigure other = largest(sensor, member);
-    const bool own = axis != sensor.axes.end() && ((*axis).*member).value && (!((*axis).*member).limit || other.limit);
-    if (own) {
+    const bool recorded = axis != sensor.axes.end();
+    if (recorded && ((*axis).*ruling).value && (!((*axis).*ruling).limit || (other->*ruling).limit)) {
       figures.push_back((*axis).*member);
-    } else {
-      if (other.value) {
-        other.remark = axis == sensor.axes.end() ? "not recorded about this axis, the largest of the others"
-                                                 : "not identified about this axis, the largest of the others";
-      }
-      figures.push_back(std::move(other));
+      continue;
     }
+    NoiseFigure figure = other == nullptr ? without_axes(sensor) : other->*member;
+    if (figure.value) {
+      const std::string which = member == ruling ? "the largest of the others" : "that of the largest of the others";
+      figure.remark = (recorded ? "not identified about this axis, " : "not recorded about this axis, ") + which;
+    }
+    figures.push_back(std::move(figure));
   }
   return figures;
 }

@@ -72,7 +72,8 @@ struct ExportTarget {
 [[nodiscard]] NoiseFigure largest(const SensorNoise& sensor, NoiseFigure AxisNoise::* member);
 
 /// The figures about x, y and z. An axis that is not in the recording, or whose figure is a limit where others are
-/// identified, gets the largest of the others, and its remark says so.
+/// identified, gets the largest of the others, and its remark says so. A correlation time is always that of the axis
+/// whose bias_sd stands beside it: 2 bias_sd^2 / T is how fast a bias moves, and of two axes it is that of neither.
 [[nodiscard]] std::vector<NoiseFigure> by_axis(const SensorNoise& sensor, NoiseFigure AxisNoise::* member);
 
 /// `figures`, each times `factor`.

@@ -7,13 +7,12 @@ namespace {
 
 /// The root density of the noise that drives a first-order Gauss-Markov process: sqrt(2 sigma^2 / T).
 std::vector<NoiseFigure> driving(const SensorNoise& sensor) {
-  SensorNoise driven = sensor;
-  for (AxisNoise& axis : driven.axes) {
-    if (axis.bias_sd.value && axis.correlation_s.value) {
-      axis.bias_sd = axis.bias_sd.scaled(std::sqrt(2.0 / *axis.correlation_s.value));
-    }
+  std::vector<NoiseFigure> figures = by_axis(sensor, &AxisNoise::bias_sd);
+  const std::vector<NoiseFigure> times = by_axis(sensor, &AxisNoise::correlation_s);
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    figures[i] = figures[i].scaled(times[i].value ? std::sqrt(2.0 / *times[i].value) : 1.0);
   }
-  return by_axis(driven, &AxisNoise::bias_sd);
+  return figures;
 }
 
 std::vector<ExportEntry> entries(const ImuNoise& imu) {

@@ -299,6 +299,37 @@ TEST(ExportTargets, PreferWhatIsIdentifiedToALimitThatIsLarger) {
   EXPECT_DOUBLE_EQ(each[2].value.value_or(0.0), kWalk[1]);
 }
 
+TEST(ExportTargets, LendAnAxisTheWholeBiasOfAnotherOne) {
+  // About x the fit found no bias and a limit stands for it, with the record's length for its time; the largest
+  // deviation is that about z, the longest time that about y, the fastest bias is y's.
+  ImuNoise imu = example();
+  for (SensorNoise* const sensor : {&imu.gyroscope, &imu.accelerometer}) {
+    sensor->axes[0].bias_sd = {2.0 * *sensor->axes[2].bias_sd.value, {}, {}, true, "limit"};
+    sensor->axes[0].correlation_s = {3600.0, {}, {}, false, "the record's length"};
+    sensor->axes[1].correlation_s = known(30.0);
+  }
+  ImuNoise unrecorded = imu;
+  unrecorded.gyroscope.axes.erase(unrecorded.gyroscope.axes.begin());
+  unrecorded.accelerometer.axes.erase(unrecorded.accelerometer.axes.begin());
+  for (const ExportTarget& target : export_targets()) {
+    if (target.bias != BiasModel::Markov || !per_axis(target.name)) {
+      continue;
+    }
+    for (const ImuNoise& one : {imu, unrecorded}) {
+      SCOPED_TRACE(std::string(target.name));
+      const Values values = values_of(target, one);
+      for (std::size_t sensor = 0; sensor < 2; ++sensor) {
+        const Meaning& meaning = meanings().at(target.name);
+        // One correlation time for all axes (KF-GINS) takes the fastest bias for the largest: of its own kind again.
+        const std::size_t lender = target.name == "kf-gins" ? 1 : 2;
+        EXPECT_NEAR(meaning(values, sensor, 0).bias / meaning(values, sensor, lender).bias, 1.0, 1e-12);
+        const double wanted = (sensor == 0 ? 1.0 : 100.0) * square(kSigma[2]) * -std::expm1(-2.0 / kTime[2]);
+        EXPECT_NEAR(meaning(values, sensor, 2).bias / wanted, 1.0, 0.01);  // a second against the times
+      }
+    }
+  }
+}
+
 TEST(ExportTargets, AreKnownByNameAndAnUnknownOneNamesThem) {
   for (const ExportTarget& target : export_targets()) {
     EXPECT_TRUE(find_export_target(target.name));
