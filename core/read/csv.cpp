@@ -428,7 +428,7 @@ int sniff(std::string_view head) {
     head.remove_prefix(text::kByteOrderMark.size());
   }
   const text::Shape shape = text::shape_of(head);
-  if (shape == text::Shape::NotText || is_special(head)) {
+  if (shape == text::Shape::NotText || shape == text::Shape::LoneReturns || is_special(head)) {
     return 0;
   }
   if (shape != text::Shape::NotATable && shape != text::Shape::Spaces) {

@@ -106,8 +106,11 @@ Result<ColumnNames> column_names(const CsvFirstLine& first, std::uint64_t line, 
       return fail(name.error());
     }
     if (!seen.insert(*name).second) {
-      return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + *name + "'; give each its own name.",
-                  {{"row", std::to_string(line)}, {"column", *name}});
+      const std::string row = std::to_string(line);
+      return fail(ErrorCode::DuplicateColumn,
+                  "Two columns are called '" + *name + "'; give each its own name, or leave the line of names out " +
+                      "with --skip-lines " + row + " and call columns by their numbers, from 0.",
+                  {{"row", row}, {"column", *name}});
     }
     names.push_back(std::move(*name));
   }

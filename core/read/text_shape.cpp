@@ -16,6 +16,11 @@ bool is_control(char c) {
   return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7F;
 }
 
+bool ends_lines_with_returns(std::string_view head) {
+  return head.find('\n') == std::string_view::npos && trim(head).find('\r') != std::string_view::npos &&
+         std::none_of(head.begin(), head.end(), is_control);
+}
+
 std::string_view take_line(std::string_view& rest) {
   const std::size_t end = rest.find('\n');
   const std::string_view line = rest.substr(0, end);
@@ -85,6 +90,9 @@ bool is_spaced_numbers(std::string_view line, std::size_t least) {
 Shape shape_of(std::string_view head) {
   if (head.starts_with(kByteOrderMark)) {
     head.remove_prefix(kByteOrderMark.size());
+  }
+  if (ends_lines_with_returns(head)) {
+    return Shape::LoneReturns;
   }
   const std::string_view first = take_content(head);
   if (std::any_of(first.begin(), first.end(), is_control)) {

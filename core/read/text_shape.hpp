@@ -10,6 +10,7 @@ namespace driftlab::text {
 enum class Shape {
   NotText,       ///< control characters in the first lines
   NotATable,     ///< words
+  LoneReturns,   ///< lines that end with carriage returns alone
   Commas,        ///< a table separated by commas
   SingleColumn,  ///< one number a line, with or without a name above
   Semicolons,

@@ -78,6 +78,9 @@ std::string describe_text(std::string_view head) {
       return "tab-separated text that is not a table of numbers; send rows of numbers under a line of names";
     case text::Shape::Spaces:
       return "text in columns that are not numbers; send rows of numbers under a line of names";
+    case text::Shape::LoneReturns:
+      return "text whose lines end with carriage returns alone, as old Macintosh programs wrote them; turn them into "
+             "line feeds: tr '\\r' '\\n' < FILE > NEW_FILE";
     case text::Shape::NotText:
       return binary_data();
     default:

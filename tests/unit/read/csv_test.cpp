@@ -95,6 +95,10 @@ TEST(Csv, SaysInOneSentenceWhatATableWithoutNumbersLacks) {
             "Line 2, column 'gx': 'a' is not a number, and no other cell is; wanted are numbers between commas, "
             "semicolons, tabs, bars or blanks.");
   EXPECT_THAT(decode_bytes("gx,gy\n1,2\n3,4,5\n").message, HasSubstr("; correct or delete that line."));
+  EXPECT_EQ(
+      decode_bytes("# two sensors\nx,y,x,y\n1,2,3,4\n").message,
+      "Two columns are called 'x'; give each its own name, or leave the line of names out with --skip-lines 2 and "
+      "call columns by their numbers, from 0.");
 }
 
 /// What the NaN in a cell says, as `kind@line`.

@@ -108,6 +108,8 @@ TEST(Unknown, IsNamedByWhatItLooksLike) {
       {"\xff\xfeg\0x\0\n\0"s, "UTF-16"},
       {"\x00\x01\x02\x03\x04"s, "binary data"},
       {"\x89PNQ\x01\x02"s, "binary data"},
+      {"t,gx\r0.00,1\r0.01,2\r", "carriage returns alone"},
+      {"gx\r1\r2", "carriage returns alone"},
       {"once upon a time\nthere was a gyroscope", "not a table"},
   };
   for (const auto& [bytes, name] : cases) {
