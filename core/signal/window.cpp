@@ -74,6 +74,39 @@ Result<Window> plan_standing_clock(const RecordingSpec& spec, std::size_t rows) 
   return window;
 }
 
+/// Rows [first, last) of a part of the recording, and of the rows that the trims leave.
+struct Rows {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  [[nodiscard]] std::size_t count() const { return last - first; }
+};
+
+/// The rows between whose stamps a mean interval is measured, of rows whose stamps do not fall. Where samples share a
+/// stamp (a clock of whole seconds, a FIFO that is read at once), the recording may begin and end within such a group,
+/// and from the first row to the last there are up to two groups of samples more than the stamps have time for: 105.2
+/// Hz in 20 s of 100 Hz stamped in whole seconds. From the first row of the second group to the first row of the last
+/// one there are as many samples as the time is long. Without shared stamps at its ends all of it counts.
+Rows timed_rows(std::span<const double> stamps, Rows rows) {
+  const auto begin = stamps.begin() + static_cast<std::ptrdiff_t>(rows.first);
+  const auto end = stamps.begin() + static_cast<std::ptrdiff_t>(rows.last);
+  const auto second = std::upper_bound(begin, end, *begin);
+  const auto last = std::lower_bound(begin, end, *(end - 1));
+  const bool shared = second - begin > 1 || end - last > 1;
+  if (!shared || last <= second) {
+    return {rows.first, rows.last - 1};
+  }
+  return {static_cast<std::size_t>(second - stamps.begin()), static_cast<std::size_t>(last - stamps.begin())};
+}
+
+/// Samples a second over all rows, losses as they are.
+double measured_rate(const TimeColumn& time) {
+  if (!time.backward.empty()) {
+    return static_cast<double>(time.stamps.size() - 1) / time.advanced_s();
+  }
+  const Rows timed = timed_rows(time.stamps, {0, time.stamps.size()});
+  return static_cast<double>(timed.count()) / (time.stamps[timed.last] - time.stamps[timed.first]);
+}
+
 Quality survey(const TimeColumn& time, const Spacing& spacing) {
   const std::vector<double>& stamps = time.stamps;
   Quality quality;
@@ -87,7 +120,7 @@ Quality survey(const TimeColumn& time, const Spacing& spacing) {
   for (const std::size_t row : spacing.long_steps) {
     quality.longest_gap_s = std::max(quality.longest_gap_s, stamps[row] - stamps[row - 1]);
   }
-  quality.measured_rate_hz = static_cast<double>(stamps.size() - 1) / time.advanced_s();
+  quality.measured_rate_hz = measured_rate(time);
   return quality;
 }
 
@@ -142,13 +175,6 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
   }
   return {};
 }
-
-/// Rows [first, last) of a part of the recording, and of the rows that the trims leave.
-struct Rows {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  [[nodiscard]] std::size_t count() const { return last - first; }
-};
 
 /// The part between two steps back that `row` lies in.
 Rows part_around(std::size_t row, const std::vector<std::size_t>& backward, Rows all) {
@@ -246,12 +272,16 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
   }
   window.quality.analysed = window.count;
   window.quality.missing = stretch.missing();
-  const double span = stamps[window.first + window.count - 1] - stamps[window.first];
+  const Rows timed = timed_rows(stamps, {window.first, window.first + window.count});
+  const double span = stamps[timed.last] - stamps[timed.first];
   if (window.count < 2 || span <= 0.0) {
     return fail(ErrorCode::TooFewSamples, "No two consecutive samples are without a gap between them.");
   }
-  const auto steps = static_cast<double>(window.count - 1 + stretch.missing());
-  if (auto status = settle_rate(spec, unit, span / steps, window); !status) {
+  std::size_t steps = timed.count();
+  for (const Gap& gap : window.gaps) {
+    steps += gap.row > timed.first && gap.row <= timed.last ? gap.missing : 0;
+  }
+  if (auto status = settle_rate(spec, unit, span / static_cast<double>(steps), window); !status) {
     return fail(status.error());
   }
   note_irregularities({first, last}, *time, window);

@@ -223,8 +223,22 @@ TEST(PlanWindow, UnderstandsFifosStampedAtOnce) {
   EXPECT_EQ(window->quality.gaps, 1U);
   EXPECT_EQ(window->count, 400U);
   EXPECT_THAT(window->gaps, ElementsAre(Gap{40, 4}));
-  // 403 steps over 100 FIFOs of 40 ms: the last FIFO counts at its first sample, a bias of 3 in 403.
-  EXPECT_NEAR(window->time.dt_s, 0.01, 0.01 * 3.0 / 403.0 * 1.01);
+  EXPECT_NEAR(window->time.dt_s, 0.01, 1e-12);
+}
+
+TEST(PlanWindow, MeasuresTheRateOfStampsInWholeSeconds) {
+  for (const double start : {0.0, 0.304, 0.995}) {
+    std::vector<double> time = stamps(2000, 0.01);
+    for (double& stamp : time) {
+      stamp = std::floor(stamp + start + 1e-9);
+    }
+    const auto window = plan({}, time);
+    ASSERT_TRUE(window) << window.error().message;
+    // Nobody sees where within its second a sample was taken: one sample in some eighteen seconds.
+    EXPECT_NEAR(window->time.rate_hz(), 100.0, 0.06) << start;
+    EXPECT_NEAR(window->quality.measured_rate_hz, 100.0, 0.06) << start;
+    EXPECT_THAT(window->gaps, IsEmpty()) << start;
+  }
 }
 
 TEST(PlanWindow, SeesOneMissingSample) {
