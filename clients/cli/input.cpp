@@ -112,7 +112,8 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
   return inputs;
 }
 
-/// The flags that describe bare recordings, those of them that are given.
+}  // namespace
+
 std::string recording_flags(const FileFlags& flags) {
   std::string given;
   for (const auto& [name, is_given] : {std::pair{"--rate-hz", !flags.rate_hz.empty()},
@@ -126,8 +127,6 @@ std::string recording_flags(const FileFlags& flags) {
   }
   return given;
 }
-
-}  // namespace
 
 Result<Inputs> described_file(const std::filesystem::path& path, const RecordingSpec& spec, const FileFlags& flags) {
   Inputs inputs;

@@ -46,6 +46,9 @@ struct Inputs {
   std::shared_ptr<Workspace> workspace = nullptr;  ///< keeps filtered copies
 };
 
+/// The flags that describe bare recordings, those of them that are given: `--rate-hz, --columns`; empty without any.
+[[nodiscard]] std::string recording_flags(const FileFlags& flags);
+
 /// Reads the inputs named on the command line: one study.json, or any number of recordings that share the flags.
 /// Errors are the user's: unreadable file, malformed study, unknown unit, ...
 [[nodiscard]] Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags);

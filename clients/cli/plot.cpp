@@ -43,6 +43,13 @@ tl::expected<Documented, Failure> stored_there(const PlotFlags& flags, Purpose p
                                    {}},
                                   Exit::BadInput});
   }
+  if (const std::string given = recording_flags(flags.file); !given.empty()) {
+    return tl::unexpected(
+        Failure{{ErrorCode::InvalidArgument,
+                 "What a daemon has stored is described there: " + given + " cannot stand beside --server.",
+                 {}},
+                Exit::BadInput});
+  }
   const auto device = purpose == Purpose::Draw ? fetch_tables : fetch_device;
   auto stored =
       flags.files.empty() ? device(flags.server, flags.file.device) : fetch_result(flags.server, flags.files.front());

@@ -83,6 +83,15 @@ class Plots(DaemonTest):
     def drawn(self, name: str) -> Drawn:
         return Drawn((self.folder / name).read_text("utf-8"))
 
+    def test_flags_that_describe_recordings_are_refused_of_what_a_daemon_has_stored(self) -> None:
+        for command in ("plot", "report"):
+            for flag, value in (("--rate-hz", "50"), ("--skip-lines", "2"), ("--comment", ";")):
+                with self.subTest(command=command, flag=flag):
+                    told = [PROGRAM, command, *self.server, "--device", "plotted", flag, value]
+                    done = subprocess.run(told, cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+                    self.assertEqual((done.returncode, done.stdout), (2, ""))
+                    self.assertIn(f"{flag} cannot stand beside --server.", done.stderr)
+
     def judge_png(self, name: str, svg: Drawn) -> None:
         """The magic, the size of the SVG times one scale, chunks with their checksums, and more than one colour."""
         content = (self.folder / name).read_bytes()
