@@ -164,7 +164,7 @@ class Stored(unittest.TestCase):
             failed = daemon.finished(daemon.characterise(short).json["id"])
             self.assertEqual(failed["state"], "failed")
             sound = daemon.finished(daemon.characterise(short, seed=2).json["id"])
-            evaluation = daemon.finished(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100}).json["id"])["id"]
+            evaluation = daemon.finished(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 10}).json["id"])["id"]
             self.assertEqual(daemon.terminate(), 0)
         file, told = self.folder / "data/driftlab.db", failed["problem"]["detail"]
         other = told[:-2] + chr(ord(told[-2]) ^ 1) + told[-1]
