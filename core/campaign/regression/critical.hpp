@@ -4,10 +4,10 @@
 ///
 /// Draws of Z = C(h kL, h kS)^1/2 z: kL, kS from their posterior, h^2 = sum_r w_r^2 h_r^2 / sum_r w_r^2 over the
 /// sessions of both arms with the weights of theta, h_r^2 = (v - 2)/chi-square(v), for sessions scatter with tails like
-/// Student's t, v = `session_df`. In arms of equal size h^2 is the mean of the h_r^2, as spec/regression.md has it; where
-/// five sessions stand against one, that one's tails are nearly all. All tests jointly, so that axes, overlapping scales
-/// and levels cost what they are worth. With s the share of a look (spec/regression.md, section 8): c_max = quantile
-/// 1 - s (alpha - 0.01) of max Z/se, c_1 = quantile 1 - s alpha of one Z/se.
+/// Student's t, v = `session_df`. In arms of equal size h^2 is the mean of the h_r^2, as spec/regression.md has it;
+/// where five sessions stand against one, that one's tails are nearly all. All tests jointly, so that axes, overlapping
+/// scales and levels cost what they are worth. With s the share of a look (spec/regression.md, section 8): c_max =
+/// quantile 1 - s (alpha - 0.01) of max Z/se, c_1 = quantile 1 - s alpha of one Z/se.
 ///   lower = theta - c_max se (all at once),  upper = theta + c_1 se (one alone)   (6)
 ///
 /// The gate. What must be shown to be within its margin: scales up to `through_s` and the gated levels of all units,

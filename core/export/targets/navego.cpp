@@ -10,7 +10,8 @@ std::vector<NoiseFigure> driving(const SensorNoise& sensor) {
   std::vector<NoiseFigure> figures = by_axis(sensor, &AxisNoise::bias_sd);
   const std::vector<NoiseFigure> times = by_axis(sensor, &AxisNoise::correlation_s);
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    figures[i] = figures[i].scaled(times[i].value ? std::sqrt(2.0 / *times[i].value) : 1.0);
+    const std::optional<double>& time_s = times[i].value;
+    figures[i] = figures[i].scaled(time_s ? std::sqrt(2.0 / *time_s) : 1.0);
   }
   return figures;
 }

@@ -234,8 +234,12 @@ TEST(Csv, IgnoresTheSeparatorBehindEachRowBelowLinesAboutTheSensor) {
 TEST(Csv, SkipsTheBannerOfABoardAboveRowsWithoutNamesAndSaysSo) {
   // `MPU6050 ready` became the header of one or two names, and the first row was refused for its six values.
   for (const std::string separator : {",", "\t", " ", ";", ", "}) {
-    const std::string row = "0.5" + separator + "-1.25" + separator + "1e-3" + separator + "4" + "\n";
-    const Outcome outcome = decode_bytes("MPU6050 ready\n" + row + row + row);
+    std::string text = "MPU6050 ready\n";
+    for (int row = 0; row < 3; ++row) {
+      text.append("0.5").append(separator).append("-1.25").append(separator).append("1e-3").append(separator).append(
+          "4\n");
+    }
+    const Outcome outcome = decode_bytes(text);
     ASSERT_FALSE(outcome.error) << separator << outcome.message;
     EXPECT_FALSE(outcome.decoded.has_header);
     EXPECT_THAT(outcome.decoded.names, ElementsAre("0", "1", "2", "3")) << separator;
