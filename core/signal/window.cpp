@@ -85,7 +85,8 @@ struct Rows {
 /// stamp (a clock of whole seconds, a FIFO that is read at once), the recording may begin and end within such a group,
 /// and from the first row to the last there are up to two groups of samples more than the stamps have time for: 105.2
 /// Hz in 20 s of 100 Hz stamped in whole seconds. From the first row of the second group to the first row of the last
-/// one there are as many samples as the time is long. Without shared stamps at its ends all of it counts.
+/// one there are as many samples as the time is long. Without shared stamps at its ends all of it counts. `last` is the
+/// later of the two rows itself, so that `count` is the number of steps between them.
 Rows timed_rows(std::span<const double> stamps, Rows rows) {
   const auto begin = stamps.begin() + static_cast<std::ptrdiff_t>(rows.first);
   const auto end = stamps.begin() + static_cast<std::ptrdiff_t>(rows.last);
