@@ -2,6 +2,7 @@
 
 #include "core/signal/text.hpp"
 #include "server/places/place.hpp"
+#include "server/store/network.hpp"
 
 #include <unistd.h>
 
@@ -67,6 +68,39 @@ Setting list_setting(std::string_view name, std::vector<std::string> Settings::*
             return {};
           },
           [member](const Settings& settings) { return Json(settings.*member); }};
+}
+
+Setting proxies_setting() {
+  Setting setting = list_setting("proxies", &Settings::proxies,
+                                 "Address of a proxy, or network of proxies, which connect for many people");
+  setting.set = [](Settings& settings, const std::vector<std::string>& values) -> Status {
+    for (const std::string& value : values) {
+      if (!Network::parse(value)) {
+        return refuse("proxies", "names addresses or networks such as 10.1.2.0/24, not '" + value + "'.");
+      }
+    }
+    settings.proxies = values;
+    return {};
+  };
+  return setting;
+}
+
+/// Hosts are compared without a port, for a proxy may stand before the daemon's own.
+Setting allow_host_setting() {
+  Setting setting = list_setting("allow_host", &Settings::allow_host,
+                                 "Another name to answer for in the Host header, without a port");
+  setting.set = [](Settings& settings, const std::vector<std::string>& values) -> Status {
+    for (const std::string& value : values) {
+      const bool is_v6 = Network::parse(value).has_value();
+      if (value.empty() || value.find('/') != std::string::npos ||
+          (!is_v6 && value.find(':') != std::string::npos && !value.starts_with('['))) {
+        return refuse("allow_host", "names hosts without a port, not '" + value + "'.");
+      }
+    }
+    settings.allow_host = values;
+    return {};
+  };
+  return setting;
 }
 
 Setting switch_setting(std::string_view name, bool Settings::* member, std::string_view meaning) {
@@ -229,7 +263,11 @@ Status take_from_table(const toml::table& table, const std::string& prefix, cons
     GivenValue given{{}, origin};
     if (const auto* const list = node.as_array()) {
       for (const toml::node& element : *list) {
-        given.values.push_back(text_of(element).value_or(""));
+        const auto text = text_of(element);
+        if (!text) {
+          return refuse(name, "in the configuration file is a list of something else than texts.");
+        }
+        given.values.push_back(*text);
       }
     } else if (const auto text = text_of(node)) {
       given.values.push_back(*text);
@@ -242,9 +280,9 @@ Status take_from_table(const toml::table& table, const std::string& prefix, cons
 }
 
 Status take_from_file(const std::string& path, GivenValues& into) {
+  std::error_code none;
   std::ifstream stream(path);
-  if (!stream) {
-    std::error_code none;
+  if (!stream || std::filesystem::is_directory(path, none)) {  // which opens like a file
     const bool there = std::filesystem::exists(path, none);
     return fail(there ? ErrorCode::Io : ErrorCode::NotFound,
                 "The configuration file '" + path + "' " + (there ? "cannot be read." : "does not exist."),
@@ -291,6 +329,33 @@ bool is_for_others(std::string_view variable) {
   return false;
 }
 
+/// Whether one letter more, less or other turns one into the other.
+bool is_one_letter_off(std::string_view one, std::string_view other) {
+  if (one.size() > other.size()) {
+    std::swap(one, other);
+  }
+  if (other.size() - one.size() > 1) {
+    return false;
+  }
+  const auto [left, right] = std::mismatch(one.begin(), one.end(), other.begin());
+  const bool is_changed = one.size() == other.size();
+  return std::equal(left == one.end() || !is_changed ? left : left + 1, one.end(),
+                    right == other.end() ? right : right + 1, other.end());
+}
+
+/// Other programs have variables of this prefix too (tests, the command line; Kubernetes makes DRIFTLAB_PORT and others
+/// for a service of that name), so that not every unknown one is a mistake. One that is a letter off is.
+Status require_no_slip(std::string_view variable) {
+  for (const Setting& setting : all_settings()) {
+    if (is_one_letter_off(variable, variable_of(setting.name))) {
+      return fail(ErrorCode::InvalidArgument,
+                  "There is no variable " + std::string(variable) + "; " + variable_of(setting.name) + " is meant?",
+                  {{"parameter", std::string(variable)}});
+    }
+  }
+  return {};
+}
+
 Status take_from_environment(const Environment& environment, GivenValues& into) {
   constexpr std::string_view kBudget = "DRIFTLAB_BUDGET_";
   for (const auto& [variable, value] : environment) {
@@ -306,8 +371,11 @@ Status take_from_environment(const Environment& environment, GivenValues& into) 
     const auto& all = all_settings();
     const auto found = std::find_if(
         all.begin(), all.end(), [&sought = variable](const Setting& one) { return variable_of(one.name) == sought; });
-    // Other programs have variables of this prefix too (tests, the command line): only a setting's own counts.
-    if (found != all.end() && !value.empty()) {
+    if (found == all.end()) {
+      if (auto meant = require_no_slip(variable); !meant) {
+        return meant;
+      }
+    } else if (!value.empty()) {
       const bool list = found->kind == SettingKind::List;
       into.insert_or_assign(std::string(found->name),
                             GivenValue{list ? split_list(value) : std::vector{value}, origin});
@@ -345,8 +413,8 @@ const std::vector<Setting>& all_settings() {
       whole_setting("cache_megabytes", &Settings::cache_megabytes, 0, 100'000'000,
                     "Local copies of recordings that lie in a database or an object storage, in --data"),
       text_setting("listen", &Settings::listen, "IP:PORT to listen on; port 0 takes any free one"),
-      list_setting("allow_host", &Settings::allow_host, "Another name to answer for in the Host header"),
-      list_setting("proxies", &Settings::proxies, "Address of a proxy, which connects for many people"),
+      allow_host_setting(),
+      proxies_setting(),
       list_setting("webhook_allow", &Settings::webhook_allow,
                    "Host, address or network that webhooks may lead to beside the Internet, also by plain http"),
       whole_setting("workers", &Settings::workers, 0, 256, "Jobs that run at once; 0 is as many as threads"),

@@ -2,6 +2,7 @@
 
 #include "core/signal/text.hpp"
 #include "server/http/forwarded.hpp"
+#include "server/store/network.hpp"
 
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -55,7 +56,7 @@ HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asi
       shared_(shared) {
   boost::system::error_code error;
   const auto peer = stream_.socket().remote_endpoint(error);
-  address_ = error ? "" : peer.address().to_string();
+  address_ = error ? "" : plain_text(peer.address());
 }
 
 asio::awaitable<void> HttpConnection::run() {

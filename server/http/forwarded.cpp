@@ -2,6 +2,7 @@
 
 #include "core/signal/text.hpp"
 #include "server/http/names.hpp"
+#include "server/store/network.hpp"
 
 #include <boost/asio/ip/address.hpp>
 
@@ -10,10 +11,6 @@
 
 namespace driftlab::server {
 namespace {
-
-bool holds(const std::vector<std::string>& list, std::string_view address) {
-  return std::find(list.begin(), list.end(), address) != list.end();
-}
 
 /// Parts of `text` between separators that stand outside quotes.
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -45,7 +42,7 @@ std::optional<std::string> address_of(std::string_view node) {
   }
   boost::system::error_code error;
   const auto parsed = boost::asio::ip::make_address(std::string(node), error);
-  return error ? std::nullopt : std::optional(parsed.to_string());
+  return error ? std::nullopt : std::optional(plain_text(parsed));
 }
 
 /// The address that an element `for=…;proto=…` names.
@@ -61,10 +58,19 @@ std::optional<std::string> address_in(std::string_view element) {
 
 }  // namespace
 
+bool is_listed(std::string_view address, const std::vector<std::string>& proxies) {
+  boost::system::error_code error;
+  const auto parsed = boost::asio::ip::make_address(std::string(address), error);
+  return !error && std::any_of(proxies.begin(), proxies.end(), [&](const std::string& entry) {
+    const auto network = Network::parse(entry);
+    return network && network->holds(parsed);
+  });
+}
+
 std::string client_address(std::string_view peer, const std::vector<std::pair<std::string, std::string>>& headers,
                            const std::vector<std::string>& proxies) {
   std::string client(peer);
-  if (!holds(proxies, peer)) {
+  if (!is_listed(peer, proxies)) {
     return client;
   }
   std::vector<std::string_view> elements;
@@ -74,7 +80,7 @@ std::string client_address(std::string_view peer, const std::vector<std::pair<st
       elements.insert(elements.end(), more.begin(), more.end());
     }
   }
-  for (auto element = elements.rbegin(); element != elements.rend() && holds(proxies, client); ++element) {
+  for (auto element = elements.rbegin(); element != elements.rend() && is_listed(client, proxies); ++element) {
     auto address = address_in(*element);
     if (!address) {
       return std::string(peer);

@@ -7,6 +7,9 @@
 
 namespace driftlab::server {
 
+/// Whether a listed address or network (ADDRESS/BITS) holds the address.
+[[nodiscard]] bool is_listed(std::string_view address, const std::vector<std::string>& proxies);
+
 /// The address of the client behind the connection of `peer`. Each proxy appends what it saw: read from the right, the
 /// first `for` that is no listed proxy is the client, and what stands left of it is a client's own claim. `peer` itself
 /// where it is no listed proxy, where there is no header, and where the header is malformed or hides the address

@@ -1,6 +1,8 @@
 #include "server/http/server.hpp"
 
 #include "server/http/connection.hpp"
+#include "server/http/forwarded.hpp"
+#include "server/store/network.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -72,8 +74,7 @@ struct HttpServer::Shared {
 bool HttpServer::Shared::is_exempt(const std::string& address) const {
   boost::system::error_code error;
   const auto parsed = asio::ip::make_address(address, error);
-  return (!error && parsed.is_loopback()) ||
-         std::find(options.proxies.begin(), options.proxies.end(), address) != options.proxies.end();
+  return !error && (parsed.is_loopback() || is_listed(address, options.proxies));
 }
 
 bool HttpServer::Shared::close_longest_idle(const std::string* address) {
@@ -166,7 +167,7 @@ asio::awaitable<void> HttpServer::Shared::accept() {
       continue;
     }
     const auto peer = socket.remote_endpoint(error);
-    const std::string address = error ? std::string() : peer.address().to_string();
+    const std::string address = error ? std::string() : plain_text(peer.address());
     if (!admit(address)) {
       continue;  // closes the socket
     }

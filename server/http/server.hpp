@@ -29,7 +29,7 @@ struct HttpOptions {
   int handler_threads = 4;
   int upload_threads = 2;
   Budgets budgets;
-  std::vector<std::string> proxies;  ///< exempt from the budgets of one address, as loopback is; their Forwarded counts
+  std::vector<std::string> proxies;  ///< addresses and networks; exempt from the budgets of one address, as loopback is; their Forwarded counts
   GuardLimits guard;
   std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };

@@ -17,22 +17,6 @@ namespace {
 
 constexpr std::size_t kLongestHost = 253;
 
-ip::address_v6 as_v6(const ip::address& address) {
-  return address.is_v4() ? ip::make_address_v6(ip::v4_mapped, address.to_v4()) : address.to_v6();
-}
-
-bool is_within(const ip::address_v6& address, const ip::address_v6& base, unsigned bits) {
-  const auto a = address.to_bytes();
-  const auto b = base.to_bytes();
-  for (unsigned i = 0; i < bits; ++i) {
-    const unsigned shift = 7U - i % 8U;
-    if (((a[i / 8U] ^ b[i / 8U]) >> shift & 1U) != 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
 struct Block {
   const char* base;
   unsigned bits;
@@ -48,9 +32,9 @@ constexpr Block kReserved4[] = {
 /// documentation, 6to4.
 constexpr Block kReserved6[] = {{"2001::", 23}, {"2001:db8::", 32}, {"2002::", 16}, {"3fff::", 20}};
 
-bool is_in(const ip::address_v6& address, const Block& block) {
+bool is_in(const ip::address& address, const Block& block) {
   const ip::address base = ip::make_address(block.base);
-  return is_within(address, as_v6(base), block.bits + (base.is_v4() ? 96U : 0U));
+  return Network{as_v6(base), block.bits + (base.is_v4() ? 96U : 0U)}.holds(address);
 }
 
 tl::unexpected<Error> refuse_url(const std::string& why) {
@@ -84,7 +68,7 @@ bool is_global(const ip::address& address) {
     return std::none_of(std::begin(kReserved4), std::end(kReserved4),
                         [&](const Block& block) { return is_in(whole, block); });
   }
-  return is_within(whole, ip::make_address_v6("2000::"), 3) &&
+  return Network{ip::make_address_v6("2000::"), 3}.holds(whole) &&
          std::none_of(std::begin(kReserved6), std::end(kReserved6),
                       [&](const Block& block) { return is_in(whole, block); });
 }
@@ -92,20 +76,9 @@ bool is_global(const ip::address& address) {
 Result<DestinationGuard> DestinationGuard::with(const std::vector<std::string>& allowed) {
   DestinationGuard guard;
   for (const std::string& entry : allowed) {
-    const std::size_t slash = entry.find('/');
-    boost::system::error_code error;
-    const ip::address address = ip::make_address(entry.substr(0, slash), error);
-    unsigned bits = error || address.is_v6() ? 128 : 32;
-    bool sound = true;
-    if (slash != std::string::npos) {
-      const char* const end = entry.data() + entry.size();
-      const unsigned most = bits;
-      const auto [stop, fault] = std::from_chars(entry.data() + slash + 1, end, bits);
-      sound = fault == std::errc{} && stop == end && bits <= most && !error;
-    }
-    if (sound && !error) {
-      guard.networks_.push_back({as_v6(address), bits + (address.is_v4() ? 96U : 0U)});
-    } else if (sound && is_host_name(lower_case(entry))) {
+    if (const auto network = Network::parse(entry)) {
+      guard.networks_.push_back(*network);
+    } else if (is_host_name(lower_case(entry))) {
       guard.hosts_.push_back(lower_case(entry));
     } else {
       return fail(
@@ -122,9 +95,8 @@ bool DestinationGuard::names_host(std::string_view host) const {
 }
 
 bool DestinationGuard::names_address(const ip::address& address) const {
-  const ip::address_v6 whole = as_v6(address);
   return std::any_of(networks_.begin(), networks_.end(),
-                     [&](const Network& network) { return is_within(whole, network.base, network.bits); });
+                     [&](const Network& network) { return network.holds(address); });
 }
 
 bool DestinationGuard::admits(std::string_view host, const ip::address& address) const {

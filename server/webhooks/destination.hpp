@@ -6,6 +6,7 @@
 /// name was resolved, and the connection goes to the address that was judged. The operator names exceptions by
 /// `--webhook-allow`: a host name, an address, or a network as ADDRESS/BITS.
 #include "core/signal/result.hpp"
+#include "server/store/network.hpp"
 
 #include <boost/asio/ip/address.hpp>
 
@@ -44,10 +45,6 @@ class DestinationGuard {
   [[nodiscard]] bool admits(std::string_view host, const boost::asio::ip::address& address) const;
 
  private:
-  struct Network {
-    boost::asio::ip::address_v6 base;  ///< IPv4 as ::ffff:a.b.c.d
-    unsigned bits = 128;
-  };
   [[nodiscard]] bool names_host(std::string_view host) const;
   [[nodiscard]] bool names_address(const boost::asio::ip::address& address) const;
 

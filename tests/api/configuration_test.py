@@ -61,6 +61,16 @@ class ConfigurationHasOrigins(unittest.TestCase):
         self.assertIn("NAME=VALUE", self.refused("--budget", "uploads"))
         self.assertIn("no setting 'budgets.colour'", self.refused(DRIFTLAB_BUDGET_COLOUR="1"))
         self.assertIn("debug, info, warning or error", self.refused("--log-level", "loud"))
+        self.assertIn("cannot be read", self.refused("--config", str(self.folder)))
+        self.assertIn("setting allow_host", self.refused("--config", write('allow_host = [1.5, "b"]\n')))
+        self.assertIn("without a port", self.refused("--allow-host", "host:8443"))
+        self.assertIn("10.1.2.0/24, not 'not-an-ip'", self.refused("--proxies", "not-an-ip"))
+        self.shown("--proxies", "10.0.0.0/8", "--proxies", "2001:db8::1", "--allow-host", "[2001:db8::1]", "--allow-host", "lab.example")
+
+    def test_a_variable_that_is_a_letter_off_is_a_mistake_and_others_are_for_others(self) -> None:
+        for slip in ("DRIFTLAB_REQUIRE_TOKEN", "DRIFTLAB_WORKERSS", "DRIFTLAB_WORKRS", "DRIFTLAB_LOG_LEVAL"):
+            self.assertIn(f"no variable {slip}", self.refused(**{slip: "1"}))
+        self.shown(DRIFTLAB_SERVICE_HOST="10.0.0.1", DRIFTLAB_PORT="tcp://10.0.0.1:8477", DRIFTLAB_SHARED="../shared")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #include "server/http/forwarded.hpp"
 
+#include "server/store/network.hpp"
+
 #include <gtest/gtest.h>
 
 namespace driftlab::server {
@@ -27,6 +29,21 @@ TEST(Forwarded, ReadsPortsQuotesAndVersionSix) {
   EXPECT_EQ(seen("10.0.0.1", {{"forwarded", "proto=https; For=\"192.0.2.7:4711\""}}), "192.0.2.7");
   EXPECT_EQ(seen("10.0.0.1", {{"forwarded", "for=\"[2001:db8::1]:80\""}}), "2001:db8::1");
   EXPECT_EQ(seen("10.0.0.1", {{"forwarded", "by=\"a;for=1.2.3.4,x\";for=192.0.2.7"}}), "192.0.2.7");
+}
+
+TEST(Forwarded, KnowsAProxyInWhicheverFormItsAddressComes) {
+  EXPECT_TRUE(is_listed("10.1.2.9", {"192.0.2.1", "10.1.2.0/24"}));
+  EXPECT_FALSE(is_listed("10.1.3.9", {"10.1.2.0/24"}));
+  EXPECT_TRUE(is_listed("2001:db8::5", {"2001:db8::/32"}));
+  EXPECT_TRUE(is_listed("::ffff:10.1.2.9", {"10.1.2.0/24"})) << "as a socket for both families has it";
+  EXPECT_TRUE(is_listed("10.1.2.9", {"::ffff:10.1.2.9"}));
+  EXPECT_FALSE(is_listed("", {"10.1.2.0/24"}));
+  EXPECT_EQ(plain_text(boost::asio::ip::make_address("::ffff:10.1.2.9")), "10.1.2.9");
+  EXPECT_EQ(plain_text(boost::asio::ip::make_address("2001:db8::5")), "2001:db8::5");
+  EXPECT_EQ(seen("10.0.0.1", {{"forwarded", "for=\"[::ffff:192.0.2.7]\""}}), "192.0.2.7");
+  for (const char* const none : {"10.0.0.0/33", "10.0.0.0/x", "10.0.0.0/", "2001:db8::/129", "host", ""}) {
+    EXPECT_FALSE(Network::parse(none)) << none;
+  }
 }
 
 TEST(Forwarded, NamesTheProxyWhereTheHeaderHidesOrIsMalformed) {
