@@ -181,7 +181,7 @@ int AccessCommands::run(const Settings& settings) const {
   if (auto loaded = gate.load(); !loaded) {
     return complain(loaded.error());
   }
-  const Caller command{Principal{"", "operator", Scope::Admin, {}, false}, "", ""};
+  const Caller command{Principal{"", "operator", Scope::Admin, {}, ""}, "", ""};
   const ActingFor acting(command);
   if (list_->parsed()) {
     return print_tokens(gate, clock.now());

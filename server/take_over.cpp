@@ -45,7 +45,7 @@ Status end_leases_of_the_dead(Store& store, Coordination* others) {
 
 /// The first admin token, for whoever can read the file.
 Status write_first_token(Gate& gate, const std::filesystem::path& path) {
-  const Caller command{Principal{"", "daemon", Scope::Admin, {}, false}, "", ""};
+  const Caller command{Principal{"", "daemon", Scope::Admin, {}, ""}, "", ""};
   const ActingFor acting(command);
   auto issued = gate.create({"first admin", Scope::Admin, std::nullopt, std::nullopt});
   if (!issued) {

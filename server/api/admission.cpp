@@ -27,7 +27,7 @@ Response insufficient(const Principal& who, Scope needed) {
 std::optional<Response> admit(Gate& gate, const Route* route, Request& request) {
   if (route == nullptr || route->scope == Scope::Public) {
     if (gate.is_on()) {
-      request.caller.principal = Principal{"", "nobody", Scope::Public, {}, false};
+      request.caller.principal = Principal{"", "nobody", Scope::Public, {}, ""};
     }
     return std::nullopt;
   }
@@ -44,7 +44,7 @@ std::optional<Response> admit(Gate& gate, const Route* route, Request& request) 
   }
   // The guard has compared what a browser says of its page; here it must have said something.
   const bool reads = request.method == "GET" || request.method == "HEAD";
-  if (principal.by_session && !reads && !request.header("origin") && !request.header("sec-fetch-site")) {
+  if (!principal.session.empty() && !reads && !request.header("origin") && !request.header("sec-fetch-site")) {
     return problem_response(HttpFault::OriginNotAllowed,
                             "A change through a session needs the header Origin or Sec-Fetch-Site; programs send a "
                             "token instead.");

@@ -13,9 +13,9 @@ std::string cookie_of(const Gate& gate, const std::string& secret, std::int64_t 
 }
 
 Json session_json(const Principal& who) {
-  return Json{{"authentication", who.token.empty() ? "off"
-                                 : who.by_session  ? "session"
-                                                   : "token"},
+  return Json{{"authentication", who.token.empty()      ? "off"
+                                 : !who.session.empty() ? "session"
+                                                        : "token"},
               {"token", who.token.empty() ? Json(nullptr) : Json(who.token)},
               {"name", who.token.empty() ? Json(nullptr) : Json(who.name)},
               {"scope", name_of(who.scope)},

@@ -11,23 +11,26 @@ namespace {
 
 constexpr UtcMicros kMinute = 60'000'000;
 constexpr UtcMicros kSessionLifetime = UtcMicros{12} * 60 * kMinute;
+constexpr UtcMicros kShortestOfLastAdmin = UtcMicros{24} * 60 * kMinute;
 constexpr std::size_t kLongestName = 100;
 constexpr std::size_t kMostDevices = 100;
 constexpr std::size_t kMostTokens = 1000;
+constexpr std::size_t kMostTokensEver = 10'000;  // each secret is compared with them all
 
 bool is_live(const Token& token, UtcMicros now) {
   return !token.is_damaged && !token.revoked_at && (!token.expires_at || *token.expires_at > now);
 }
 
-Principal principal_of(const Token& token) { return {token.id, token.name, token.scope, token.devices, false}; }
+Principal principal_of(const Token& token) { return {token.id, token.name, token.scope, token.devices, ""}; }
 
-/// The value of the session cookie, under either of its names.
-std::optional<std::string_view> session_of(std::string_view cookies) {
+/// The value of the session cookie. Under TLS only that with the prefix counts, which no other host and no page of
+/// plain HTTP can set.
+std::optional<std::string_view> session_of(std::string_view cookies, bool secure) {
   for (const std::string_view pair : split(cookies, ';')) {
     const std::string_view cookie = trimmed(pair);
     const std::size_t equals = std::min(cookie.find('='), cookie.size());
     const std::string_view name = cookie.substr(0, equals);
-    if (equals < cookie.size() && (name == session_cookie(true) || name == session_cookie(false))) {
+    if (equals < cookie.size() && name == session_cookie(secure)) {
       return cookie.substr(equals + 1);
     }
   }
@@ -108,7 +111,7 @@ tl::expected<Principal, std::string> Gate::identify(const Credentials& credentia
     return Principal{};
   }
   const Token* token = nullptr;
-  bool by_session = false;
+  std::string by_session;
   if (credentials.authorization) {
     constexpr std::string_view kBearer = "bearer ";
     const std::string scheme = lower_case(credentials.authorization->substr(0, kBearer.size()));
@@ -120,12 +123,12 @@ tl::expected<Principal, std::string> Gate::identify(const Credentials& credentia
                       "typing error."));
     }
     token = token_of_secret(*all, secret);
-  } else if (const auto cookie = credentials.cookie ? session_of(*credentials.cookie) : std::nullopt) {
+  } else if (const auto cookie = credentials.cookie ? session_of(*credentials.cookie, options_.secure) : std::nullopt) {
     const std::string digest = sha256_hex(*cookie);
     for (const Session& session : all->sessions) {
       if (is_same_digest(session.secret_sha256, digest) && session.expires_at > clock_.now()) {
         token = all->find(session.token);
-        by_session = true;
+        by_session = digest;
       }
     }
     if (token == nullptr) {
@@ -146,7 +149,7 @@ tl::expected<Principal, std::string> Gate::identify(const Credentials& credentia
   }
   note_use(token->id);
   Principal principal = principal_of(*token);
-  principal.by_session = by_session;
+  principal.session = std::move(by_session);
   return principal;
 }
 
@@ -156,7 +159,12 @@ bool Gate::is_valid(const Principal& principal) const {
     return !options_.require && all->tokens.empty();
   }
   const Token* const token = all->find(principal.token);
-  return token != nullptr && is_live(*token, clock_.now());
+  const auto now = clock_.now();
+  return token != nullptr && is_live(*token, now) &&
+         (principal.session.empty() ||
+          std::any_of(all->sessions.begin(), all->sessions.end(), [&](const Session& session) {
+            return session.secret_sha256 == principal.session && session.expires_at > now;
+          }));
 }
 
 Result<IssuedToken> Gate::create(const NewToken& wanted) {
@@ -185,8 +193,14 @@ Result<IssuedToken> Gate::create(const NewToken& wanted) {
                 "another one.",
                 {{"scope", std::string(name_of(wanted.scope))}});
   }
-  if (kept()->tokens.size() >= kMostTokens) {
-    return fail(ErrorCode::LimitExceeded, "There are 1000 tokens, revoked ones among them; that is the limit.",
+  const auto all = kept();
+  const auto live =
+      std::count_if(all->tokens.begin(), all->tokens.end(), [&](const Token& token) { return is_live(token, now); });
+  if (static_cast<std::size_t>(live) >= kMostTokens || all->tokens.size() >= kMostTokensEver) {
+    return fail(ErrorCode::LimitExceeded,
+                "There are " + std::to_string(live) + " tokens, and " + std::to_string(all->tokens.size()) +
+                    " with those revoked or expired; the limits are " + std::to_string(kMostTokens) + " and " +
+                    std::to_string(kMostTokensEver) + ".",
                 {{"limit", std::to_string(kMostTokens)}});
   }
   IssuedToken issued;
@@ -213,12 +227,13 @@ Result<Token> Gate::revoke(std::string_view id, bool even_last) {
   const auto all = kept();
   const auto now = clock_.now();
   const Token* const token = all->find(id);
-  const auto admins = std::count_if(all->tokens.begin(), all->tokens.end(), [&](const Token& each) {
-    return each.scope == Scope::Admin && is_live(each, now);
+  const bool another_lasts = std::any_of(all->tokens.begin(), all->tokens.end(), [&](const Token& each) {
+    return &each != token && each.scope == Scope::Admin && is_live(each, now + kShortestOfLastAdmin);
   });
-  if (!even_last && token != nullptr && token->scope == Scope::Admin && is_live(*token, now) && admins == 1) {
+  if (!even_last && token != nullptr && token->scope == Scope::Admin && is_live(*token, now) && !another_lasts) {
     return fail(ErrorCode::Conflict,
-                "The token " + token->id + " is the last admin: make another one before, or nobody could.",
+                "The token " + token->id +
+                    " is the last admin that lasts another day: make another one before, or nobody could.",
                 {{"token", token->id}});
   }
   auto revoked = store_.revoke_token(id);
@@ -230,6 +245,12 @@ Result<Token> Gate::revoke(std::string_view id, bool even_last) {
 
 Result<IssuedToken> Gate::rotate(std::string_view id) {
   const std::lock_guard changing(changing_);
+  const auto all = kept();
+  const Token* const token = all->find(id);
+  if (token != nullptr && token->expires_at && *token->expires_at <= clock_.now()) {
+    return fail(ErrorCode::Conflict, "The token " + token->id + " has expired; make another one.",
+                {{"token", token->id}});
+  }
   IssuedToken issued;
   issued.secret = make_secret();
   auto rotated = store_.rotate_token(id, sha256_hex(issued.secret));
@@ -269,7 +290,7 @@ Result<IssuedSession> Gate::open_session(std::string_view secret) {
 }
 
 Status Gate::close_session(const Credentials& credentials) {
-  const auto cookie = credentials.cookie ? session_of(*credentials.cookie) : std::nullopt;
+  const auto cookie = credentials.cookie ? session_of(*credentials.cookie, options_.secure) : std::nullopt;
   if (!cookie) {
     return {};
   }

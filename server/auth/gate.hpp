@@ -65,14 +65,16 @@ class Gate {
 
   /// Who brings these credentials. Error: a sentence for whoever is not admitted, in `unexpected`.
   [[nodiscard]] tl::expected<Principal, std::string> identify(const Credentials& credentials);
-  /// Whether that principal would be admitted still: its token is neither revoked nor expired.
+  /// Whether that principal would be admitted still: its token is neither revoked nor expired, and the session that it
+  /// came in by has not ended.
   [[nodiscard]] bool is_valid(const Principal& principal) const;
 
   /// Errors: InvalidArgument (name, devices of an admin, expiry in the past), Conflict (the first token must be an
   /// admin).
   [[nodiscard]] Result<IssuedToken> create(const NewToken& wanted);
-  /// Errors: NotFound; Conflict for the last admin, unless `even_last`.
+  /// Errors: NotFound; Conflict for the last admin that lasts another day, unless `even_last`.
   [[nodiscard]] Result<Token> revoke(std::string_view id, bool even_last = false);
+  /// Another secret for the same token. Errors: NotFound; Conflict where it was revoked or has expired.
   [[nodiscard]] Result<IssuedToken> rotate(std::string_view id);
   [[nodiscard]] Result<std::vector<Token>> tokens() { return store_.tokens(); }
   [[nodiscard]] bool is_secure() const { return options_.secure; }

@@ -25,7 +25,7 @@ struct Principal {
   std::string name;                                 ///< what the token is called
   Scope scope = Scope::Admin;                       ///< at most this
   std::optional<std::vector<std::string>> devices;  ///< names of the only devices there are for it; nothing: all
-  bool by_session = false;                          ///< through the cookie of a dashboard
+  std::string session = {};  ///< digest of the session that it came in by, the cookie of a dashboard; empty: none
 };
 
 struct Caller {

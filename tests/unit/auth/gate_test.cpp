@@ -115,6 +115,45 @@ TEST_F(GateTest, ASessionLastsTwelveHoursAndNoLongerThanItsToken) {
   EXPECT_FALSE(admitted(day));
 }
 
+TEST_F(GateTest, WhoCameInByASessionIsAdmittedUntilItEnds) {
+  const IssuedToken token = made(Scope::Admin);
+  const IssuedSession session = gate_->open_session(token.secret).value();
+  const std::string cookie = "driftlab-session=" + session.secret;
+  const Principal who = gate_->identify({std::nullopt, cookie}).value();
+  EXPECT_TRUE(gate_->is_valid(who));
+  ASSERT_TRUE(gate_->close_session({std::nullopt, cookie}));
+  EXPECT_FALSE(gate_->is_valid(who));
+  const IssuedSession day = gate_->open_session(token.secret).value();
+  const Principal again = gate_->identify({std::nullopt, "driftlab-session=" + day.secret}).value();
+  clock_.advance(12 * kHour);
+  EXPECT_FALSE(gate_->is_valid(again));
+  EXPECT_TRUE(gate_->is_valid(gate_->identify({"Bearer " + token.secret, std::nullopt}).value()));
+}
+
+TEST_F(GateTest, UnderTlsOnlyTheCookieCountsThatNoOtherHostCanSet) {
+  const IssuedToken token = made(Scope::Admin);
+  reopen({.require = true, .secure = true});
+  const IssuedSession session = gate_->open_session(token.secret).value();
+  EXPECT_FALSE(gate_->identify({std::nullopt, "driftlab-session=" + session.secret}));
+  EXPECT_TRUE(gate_->identify({std::nullopt, "driftlab-session=planted; __Host-driftlab=" + session.secret}));
+}
+
+TEST_F(GateTest, AnAdminThatEndsWithinTheDayIsNotTheLast) {
+  const IssuedToken lasting = made(Scope::Admin);
+  (void)made(Scope::Admin, clock_.now() + 3 * kSecond);
+  EXPECT_EQ(gate_->revoke(lasting.token.id).error().code, ErrorCode::Conflict);
+  (void)made(Scope::Admin, clock_.now() + 25 * kHour);
+  EXPECT_TRUE(gate_->revoke(lasting.token.id));
+}
+
+TEST_F(GateTest, AnExpiredTokenGetsNoNewSecret) {
+  (void)made(Scope::Admin);
+  const IssuedToken token = made(Scope::Read, clock_.now() + kHour);
+  EXPECT_TRUE(gate_->rotate(token.token.id));
+  clock_.advance(kHour);
+  EXPECT_EQ(gate_->rotate(token.token.id).error().code, ErrorCode::Conflict);
+}
+
 TEST_F(GateTest, WritesTheLastUseOncePerMinute) {
   (void)made(Scope::Admin);
   clock_.advance(kSecond);  // tokens are listed by age
@@ -133,7 +172,7 @@ TEST_F(GateTest, WritesTheLastUseOncePerMinute) {
 }
 
 TEST_F(GateTest, RowsOfTheAuditLogStandOrFallWithTheirChange) {
-  const Caller caller{Principal{"", "operator", Scope::Admin, {}, false}, "req", "::1"};
+  const Caller caller{Principal{"", "operator", Scope::Admin, {}, ""}, "req", "::1"};
   const ActingFor acting(caller);
   ASSERT_TRUE(store_->ensure_device({"", "a", "", "", "", "{}", 1, 0, 0}));
   ASSERT_TRUE(store_->ensure_device({"", "a", "", "", "", "{}", 1, 0, 0}));  // changes nothing

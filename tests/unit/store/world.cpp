@@ -74,7 +74,7 @@ Caller add_caller(Store& store, const std::string& id) {
   token.scope = Scope::Run;
   token.secret_sha256 = std::string(64 - id.size(), '0') + id;
   EXPECT_TRUE(dynamic_cast<SqlStore&>(store).access().add_token(token));
-  return {Principal{id, id, Scope::Run, {}, false}, "req", "127.0.0.1"};
+  return {Principal{id, id, Scope::Run, {}, ""}, "req", "127.0.0.1"};
 }
 
 Job add_job(Store& store, const std::string& unique_key, int priority) {

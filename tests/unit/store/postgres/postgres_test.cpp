@@ -169,7 +169,7 @@ TEST_F(PostgresStoreTest, AuditedWritesOfSeveralDaemonsAreOneChain) {
   threads.reserve(6);
   for (int i = 0; i < 6; ++i) {
     threads.emplace_back([&, i] {
-      const Caller caller{Principal{"", "tester", Scope::Admin, {}, false}, "req", "127.0.0.1"};
+      const Caller caller{Principal{"", "tester", Scope::Admin, {}, ""}, "req", "127.0.0.1"};
       const ActingFor acting(caller);
       for (int n = 0; n < 10; ++n) {
         add_device(i % 2 == 0 ? *one : *two, std::to_string(i) + "/" + std::to_string(n));
