@@ -80,9 +80,16 @@ class AllEvents final : public EventSource {
   }
 
  private:
-  /// What the listener could not read it does not hear of either.
+  /// What the listener could not read it does not hear of either. Of what is gone the store says nothing more, so that
+  /// only a listener who is limited to devices is asked what it sees.
   bool is_visible(const LoggedEvent& event) {
+    if (devices_of_caller() == nullptr) {
+      return true;
+    }
     const Json data = stored(event.data);
+    if (event.type == "device.deleted") {
+      return require_device(data.value("name", "")).has_value();
+    }
     const auto names = [&data](const char* member) { return data.contains(member) && data[member].is_string(); };
     return (!names("device") || store_.device(data["device"].get<std::string>())) &&
            (!names("job") || store_.job(data["job"].get<std::string>()));

@@ -190,6 +190,15 @@ class Sessions(GuardedDaemon):
         # 404: a daemon that was built without pages
         self.assertTrue(page.startswith((b"HTTP/1.1 200 ", b"HTTP/1.1 404 ")), page[:200])
 
+    def test_an_event_stream_ends_with_its_session(self) -> None:
+        cookie = self.sign_in()
+        with self.daemon.connect() as connection:
+            connection.sendall(f"GET /v1/events HTTP/1.1\r\nHost: localhost\r\nCookie: {cookie}\r\n\r\n".encode())
+            self.assertTrue(connection.recv(65536).startswith(b"HTTP/1.1 200 "))
+            self.expect(204, self.daemon.request("DELETE", "/v1/session", headers={"Cookie": cookie, "Sec-Fetch-Site": "same-origin"}))
+            connection.settimeout(10)
+            read_all(connection)
+
     def test_an_event_stream_ends_with_its_token(self) -> None:
         made = self.daemon.post("/v1/tokens", {"name": "listener", "scope": "read"}).json
         job = self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000}).json["id"]
@@ -342,6 +351,22 @@ class OtherDevices(GuardedDaemon):
         own = {r["id"] for r in self.ask(self.limited, "GET", "/v1/jobs?limit=500").json["items"]}
         self.assertLess(own, everything)
         self.assertIn(self.mine["regression"], own)
+
+    def test_it_hears_that_its_own_device_is_gone_and_of_no_other(self) -> None:
+        for name in ("gone-mine", "gone-theirs"):
+            self.expect(201, self.daemon.post("/v1/devices", {"name": name}))
+        secret = self.token("read", devices=["gone-mine"])
+        with self.daemon.connect() as connection:
+            connection.sendall(f"GET /v1/events HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {secret}\r\n\r\n".encode())
+            text = b""
+            while b"event: ready" not in text:
+                text += connection.recv(65536)
+            for name in ("gone-theirs", "gone-mine"):
+                self.expect(204, self.daemon.request("DELETE", f"/v1/devices/{name}", headers={"If-Match": "*"}))
+            while b"device.deleted" not in text:
+                text += connection.recv(65536)
+        self.assertIn(b"gone-mine", text)
+        self.assertNotIn(b"gone-theirs", text)
 
     def test_the_stream_of_all_events_tells_of_its_own_devices_alone(self) -> None:
         with self.daemon.connect() as connection:

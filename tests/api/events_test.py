@@ -92,9 +92,12 @@ class Events(DaemonTest):
             recording = self.daemon.upload(samples.gyro_csv(seed=9), rate_hz=100, columns=samples.GYRO_Z)
             self.daemon.request("PATCH", recording.headers["location"], {"condition": {"kind": "drive"}}, {"If-Match": "*"})
             self.daemon.request("DELETE", recording.headers["location"], headers={"If-Match": "*"})
-            seen = until(events, "recording.deleted")
+            name = device.headers["location"]
+            self.expect(204, self.daemon.request("DELETE", name, headers={"If-Match": self.daemon.get(name).headers["etag"]}))
+            seen = until(events, "device.deleted")
         self.assertEqual([kind for _, kind, _ in seen],
-                         ["device.created", "device.changed", "recording.created", "recording.changed", "recording.deleted"])
+                         ["device.created", "device.changed", "recording.created", "recording.changed", "recording.deleted", "device.deleted"])
+        self.assertEqual(seen[-1][2]["name"], "told")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,10 @@ constexpr std::string_view kVisibleJob =
     "WHERE job_id = jobs.id) AND NOT EXISTS (SELECT 1 FROM job_devices JOIN devices ON devices.id = "
     "job_devices.device_id WHERE job_id = jobs.id AND devices.name NOT IN (SELECT value FROM json_each(?)))))";
 
+/// Of verdicts: all but those on a device among the others of its model (server/jobs/line_verdicts.hpp), which would
+/// tell a caller limited to devices of those that it does not see.
+constexpr std::string_view kNotOfLine = "(recording_id IS NOT NULL OR channel = '')";
+
 /// A SELECT with those conditions that a filter asks for. Texts are constants of our own; values are bound.
 class FilteredQuery {
  public:

@@ -1,5 +1,6 @@
 /// What a list of devices shows of each: which result stands for an axis is marked in the transaction that changes the
 /// results of the axis, so that a page of the list reads the marked rows alone, whatever else is stored.
+#include "server/store/sql/filtered_query.hpp"
 #include "server/store/sql/tables.hpp"
 
 #include <nlohmann/json.hpp>
@@ -40,8 +41,8 @@ constexpr std::string_view kNewest =
     "(";
 constexpr std::string_view kVerdict = "SELECT " DRIFTLAB_VERDICT_COLUMNS
                                       " FROM verdicts WHERE id IN (SELECT (SELECT max(one.id) FROM verdicts AS one "
-                                      "WHERE one.device_id = devices.id) FROM "
-                                      "devices WHERE devices.id IN (";
+                                      "WHERE one.device_id = devices.id";
+constexpr std::string_view kOfDevices = ") FROM devices WHERE devices.id IN (";
 constexpr std::string_view kEndOfNewest = "))";
 constexpr std::string_view kThese = "SELECT id FROM devices WHERE id IN (SELECT value FROM json_each(?))";
 constexpr std::string_view kAmongVisible = " AND name IN (SELECT value FROM json_each(?))";
@@ -158,9 +159,11 @@ Result<DeviceOverviews> overviews(Connection& connection, const std::vector<std:
     });
   }
   if (read) {
-    read = each_row(connection, kVerdict, devices, kEndOfNewest, [&](const Statement& row) {
+    const std::string verdict =
+        std::string(kVerdict) + (visible ? " AND " + std::string(kNotOfLine) : "") + std::string(kOfDevices);
+    read = each_row(connection, verdict, devices, kEndOfNewest, [&](const Statement& row) {
       return read_verdict(row).map(
-          [&](ResultVerdict verdict) { found[verdict.device_id].verdict = std::move(verdict); });
+          [&](ResultVerdict newest) { found[newest.device_id].verdict = std::move(newest); });
     });
   }
   return read ? Result<DeviceOverviews>(std::move(found)) : fail(read.error());

@@ -77,6 +77,9 @@ Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const Verdic
   if (filter.to_read) {
     query.where("level <> 'fine'");
   }
+  if (page.visible) {
+    query.where(kNotOfLine);
+  }
   return query.visible_or_own(page, "device_id", "verdicts.job_id").read_page(connection, page, read_verdict);
 }
 

@@ -330,6 +330,14 @@ TEST_P(ListStore, WhatTheDevicesOfAModelSayOfOneHoldsUntilTheySayElse) {
   EXPECT_EQ(store().verdicts({}, {})->size(), 2U) << "each model speaks for itself";
   finish("MPU-6050", "not of the line by N");
   EXPECT_EQ(newest(), "not of the line by N");
+  const std::string own = store().device(recording.device_id)->name;
+  Page limited;
+  limited.visible = Visibility{"[\"" + own + "\"]", "token"};
+  VerdictFilter all;
+  all.to_read = false;
+  ASSERT_EQ(store().verdicts(all, limited)->size(), 1U) << "to whom the other devices are nothing";
+  EXPECT_EQ(store().verdicts(all, limited)->front().verdict, "fits");
+  EXPECT_EQ(store().overviews({recording.device_id}, limited.visible)->at(recording.device_id).verdict->verdict, "fits");
   finish("MPU-6050", "");
   EXPECT_EQ(newest(), "fits") << "nothing is to be said any more";
   ASSERT_EQ(store().verdicts({}, {})->size(), 1U);
