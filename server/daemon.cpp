@@ -397,7 +397,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   hooks.still_admitted = [shared](const Principal& who) { return shared->gate->is_valid(who); };
   hooks.dispatch = [shared](const Route& route, const Request& request) {
     Response response = shared->dispatcher.run(route, request);
-    if (const auto flushed = route.instant ? Status{} : shared->gate->flush_use(); !flushed) {
+    if (const auto flushed = route.lane == Lane::Instant ? Status{} : shared->gate->flush_use(); !flushed) {
       log_warning("the last use of tokens was not written", Json{{"detail", flushed.error().message}});
     }
     return response;

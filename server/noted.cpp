@@ -40,7 +40,8 @@ void note_request(Metrics& metrics, BadStates& states, const AccessRecord& recor
   if (record.failure) {
     note_failure(states, *record.failure, Json{{"request_id", record.request_id}, {"route", record.route}});
   }
-  metrics.count_request(record.method, record.route, record.status, record.seconds, record.bytes_in, record.bytes_out);
+  metrics.count_request(record.method, record.route, record.status, record.seconds - record.client_seconds,
+                        record.bytes_in, record.bytes_out);
   log_info("request", LogFields()
                           .text("method", record.method)
                           .text("route", record.route)

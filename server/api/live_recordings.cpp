@@ -422,10 +422,11 @@ void add_live_recording_routes(Router& router, ApiContext& context) {
               "addLiveSamples",
               {"sequence"},
               UploadHandler([live](const Request& request) { return begin_samples(*live, request); })});
-  router.add(
+  router.add(in_lane(
+      Lane::Decoding,
       {"POST", "/v1/live-recordings/{id}/finish", "finishLiveRecording", {}, Handler([live](const Request& request) {
          return finish(*live, request);
-       })});
+       })}));
   router.add({"GET",
               "/v1/live-recordings/{id}/events",
               "streamLiveRecording",

@@ -4,6 +4,7 @@
 #include "schema/json/reported_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/jobs/job_cost.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
 #include <charconv>
@@ -29,10 +30,29 @@ Result<std::size_t> whole(const Request& request, std::string_view name, std::si
   return value;
 }
 
+/// Whether a look at that recording takes no more memory than one may: its rows are read and put into order whole.
+Status admit_look(ApiContext& context, const Request& request) {
+  constexpr std::int64_t kBytesPerRow = 24;
+  const std::int64_t most = request.budgets->look_bytes;
+  const Json recordings = Json::array({Json{{"id", request.parameters[0]}}});
+  for (const RecordingSize& size : sizes_of(recordings, context.store)) {
+    if (size.rows > most / kBytesPerRow) {
+      return fail(ErrorCode::LimitExceeded,
+                  "The recording has " + std::to_string(size.rows) + " rows, and a look at one of its channels takes " +
+                      std::to_string(kBytesPerRow) + " bytes of each " + naming_budget("look_bytes", most) + ".",
+                  {{"limit", std::to_string(most / kBytesPerRow)}});
+    }
+  }
+  return {};
+}
+
 Result<ChannelLook> look_of(ApiContext& context, const Request& request) {
   const auto channel = request.parameter("channel");
   if (!channel) {
     return fail(ErrorCode::InvalidArgument, "Name a column of the recording: ?channel=…", {{"parameter", "channel"}});
+  }
+  if (auto admitted = admit_look(context, request); !admitted) {
+    return fail(admitted.error());
   }
   StoredRecordings source(context.store, context.blobs, {{request.parameters[0], std::nullopt, ""}},
                           context.expect_sound_columns);
@@ -115,21 +135,21 @@ Result<Response> get_spectrogram(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_look_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/recordings/{id}/spectrum",
-              "getSpectrum",
-              {"channel", "scale", "points"},
-              Handler([&](const Request& request) { return get_spectrum(context, request); })});
-  router.add({"GET",
-              "/v1/recordings/{id}/histogram",
-              "getHistogram",
-              {"channel", "bins"},
-              Handler([&](const Request& request) { return get_histogram(context, request); })});
-  router.add({"GET",
-              "/v1/recordings/{id}/spectrogram",
-              "getSpectrogram",
-              {"channel", "times", "bands", "fit"},
-              Handler([&](const Request& request) { return get_spectrogram(context, request); })});
+  router.add(in_lane(Lane::Slow, {"GET",
+                                  "/v1/recordings/{id}/spectrum",
+                                  "getSpectrum",
+                                  {"channel", "scale", "points"},
+                                  Handler([&](const Request& request) { return get_spectrum(context, request); })}));
+  router.add(in_lane(Lane::Slow, {"GET",
+                                  "/v1/recordings/{id}/histogram",
+                                  "getHistogram",
+                                  {"channel", "bins"},
+                                  Handler([&](const Request& request) { return get_histogram(context, request); })}));
+  router.add(in_lane(Lane::Slow, {"GET",
+                                  "/v1/recordings/{id}/spectrogram",
+                                  "getSpectrogram",
+                                  {"channel", "times", "bands", "fit"},
+                                  Handler([&](const Request& request) { return get_spectrogram(context, request); })}));
 }
 
 }  // namespace driftlab::server

@@ -178,9 +178,10 @@ void add_recording_routes(Router& router, ApiContext& context) {
   router.add(from_rows({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
                           return get_recording(context, request);
                         })}));
-  router.add({"PATCH", "/v1/recordings/{id}", "changeRecording", {}, Handler([&](const Request& request) {
-                return patch_recording(context, request);
-              })});
+  router.add(
+      in_lane(Lane::Slow, {"PATCH", "/v1/recordings/{id}", "changeRecording", {}, Handler([&](const Request& request) {
+                             return patch_recording(context, request);
+                           })}));
   router.add({"DELETE", "/v1/recordings/{id}", "deleteRecording", {}, Handler([&](const Request& request) {
                 return delete_recording(context, request);
               })});

@@ -116,7 +116,7 @@ void add_watch_routes(Router& router, ApiContext& context) {
   Route health{"GET", "/healthz", "health", {}, Handler([alive = std::move(alive)](const Request&) -> Result<Response> {
                  return alive;
                })};
-  health.instant = true;
+  health.lane = Lane::Instant;
   router.add(std::move(health));
   router.add({"GET", "/readyz", "readiness", {}, Handler([&](const Request&) { return ready(context); })});
   router.add({"GET", "/metrics", "metrics", {}, Handler([&](const Request&) -> Result<Response> {

@@ -337,8 +337,10 @@ void add_upload_routes(Router& router, ApiContext& context) {
   router.add({"DELETE", "/v1/uploads/{id}", "deleteUpload", {}, Handler([uploads](const Request& request) {
                 return terminate(*uploads, request);
               })});
-  router.add({"POST", "/v1/uploads/{id}/recording", "recordUpload", metadata_parameters(),
-              Handler([&context, uploads](const Request& request) { return record(context, *uploads, request); })});
+  router.add(in_lane(Lane::Decoding, {"POST", "/v1/uploads/{id}/recording", "recordUpload", metadata_parameters(),
+                                      Handler([&context, uploads](const Request& request) {
+                                        return record(context, *uploads, request);
+                                      })}));
 }
 
 }  // namespace driftlab::server

@@ -60,6 +60,7 @@ HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asi
 }
 
 asio::awaitable<void> HttpConnection::run() {
+  begin_waiting();  // whoever never says hello waits like any other, and makes place like any other
   const bool shaken = co_await stream_.handshake(10s);
   if (!shaken) {
     co_return;
@@ -101,9 +102,11 @@ std::optional<std::chrono::steady_clock::time_point> HttpConnection::idle_since(
   return std::chrono::steady_clock::time_point(std::chrono::steady_clock::duration(since));
 }
 
+void HttpConnection::begin_waiting() { idle_since_ = std::chrono::steady_clock::now().time_since_epoch().count(); }
+
 asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   boost::system::error_code error;
-  idle_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
+  begin_waiting();
   if (buffer_.size() == 0) {
     buffer_.shrink_to_fit();
     std::vector<std::byte>().swap(chunk_);
@@ -118,6 +121,7 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   route_.clear();
   client_ = address_;
   bytes_in_ = 0;
+  for_client_ = {};
   broken_ = false;
   folded_ = false;
   chunked_.reset();
@@ -277,25 +281,43 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
     }
     request.body.append(reinterpret_cast<const char*>(chunk_.data()), *count);
   }
-  auto work = [this, &route, &request] {
-    const ActingFor acting(request.caller);
-    return shared_.hooks.dispatch(route, request);
-  };
   std::optional<Response> outcome;
   if (shared_.hooks.known) {
     outcome = shared_.hooks.known(route, request);
   }
-  if (!outcome && route.instant) {
-    outcome = work();
-  } else if (!outcome) {
-    outcome = co_await shared_.handlers.run(work);
+  if (!outcome) {
+    outcome = co_await dispatch_in_lane(route, request);
   }
-  Response response =
-      outcome ? std::move(*outcome) : problem_response(HttpFault::Busy, "Too many requests are waiting.");
+  Response response = outcome ? std::move(*outcome) : too_many_waiting(budgets());
   if (patience_for(request, response) > 0s) {
     response = co_await wait_for_job(route, request, std::move(response));
   }
   co_return co_await send(request, std::move(response), true);
+}
+
+Response HttpConnection::dispatch(const Route& route, const Request& request) const {
+  const ActingFor acting(request.caller);
+  return shared_.hooks.dispatch(route, request);
+}
+
+asio::awaitable<std::optional<Response>> HttpConnection::dispatch_in_lane(const Route& route, const Request& request) {
+  auto work = [this, &route, &request] { return dispatch(route, request); };
+  std::optional<Response> outcome;
+  switch (route.lane) {
+    case Lane::Instant:
+      outcome = work();
+      break;
+    case Lane::Prompt:
+      outcome = co_await shared_.handlers.run(work);
+      break;
+    case Lane::Slow:
+      outcome = co_await shared_.slow.run(work);
+      break;
+    case Lane::Decoding:
+      outcome = co_await dispatch_decoding(route, request);
+      break;
+  }
+  co_return outcome;
 }
 
 asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const Request& request, Response response) {
@@ -307,12 +329,11 @@ asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const
     if (left <= 0s) {
       break;
     }
-    co_await listener->wait(std::min<std::chrono::steady_clock::duration>(left, 1s));
-    auto work = [this, &route, &request] {
-      const ActingFor acting(request.caller);
-      return shared_.hooks.dispatch(route, request);
-    };
-    auto outcome = co_await shared_.handlers.run(work);
+    {
+      const Timed as_asked(for_client_);
+      co_await listener->wait(std::min<std::chrono::steady_clock::duration>(left, 1s));
+    }
+    auto outcome = co_await dispatch_in_lane(route, request);
     if (outcome) {
       response = std::move(*outcome);
     }
@@ -394,7 +415,8 @@ void HttpConnection::log(const Request& request, const Response& response) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_,
-                     response.file ? response.file->length : response.body.size(), seconds, request.request_id, client_,
+                     response.file ? response.file->length : response.body.size(), seconds,
+                     std::chrono::duration<double>(for_client_).count(), request.request_id, client_,
                      request.caller.principal.token, response.failure});
 }
 

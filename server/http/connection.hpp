@@ -34,14 +34,20 @@ inline constexpr std::size_t kBodyPiece = 256UL * 1024;
   return boost::asio::redirect_error(boost::asio::use_awaitable, error);
 }
 
+/// The answer where work found no place in its queue.
+[[nodiscard]] inline Response too_many_waiting(const Budgets& budgets) {
+  return problem_response(HttpFault::Busy, "Too many requests are waiting " +
+                                               naming_budget("requests_waiting", budgets.requests_waiting) + ".");
+}
+
 /// What work gave, or the answer where it failed or found no place in its queue.
 ///
 /// GCC 12 destroys the arms of a conditional twice where it stands inside a co_await expression. No such expression
 /// here holds one: what is awaited is made in a statement of its own.
 template <class Value>
-[[nodiscard]] tl::expected<Value, Response> settle(std::optional<Result<Value>> outcome) {
+[[nodiscard]] tl::expected<Value, Response> settle(std::optional<Result<Value>> outcome, const Budgets& budgets) {
   if (!outcome) {
-    return tl::unexpected(problem_response(HttpFault::Busy, "Too many requests are waiting."));
+    return tl::unexpected(too_many_waiting(budgets));
   }
   return std::move(*outcome).map_error([](const Error& error) { return problem_response(error); });
 }
@@ -53,11 +59,25 @@ struct ConnectionShared {
   Bell& bell;
   const HttpHooks& hooks;
   BoundedPool& handlers;
+  BoundedPool& slow;       ///< handlers that read a whole recording
   BoundedPool& uploads;    ///< takes bytes in
   BoundedPool& decodings;  ///< ends uploads, which takes as long as they are large
   std::atomic<bool>& stopping;
   UploadPlaces& upload_places;
   RequestsInFlight& in_flight;
+};
+
+/// Adds the time of its life to `sum`.
+class Timed {
+ public:
+  explicit Timed(std::chrono::steady_clock::duration& sum) : sum_(sum), began_(std::chrono::steady_clock::now()) {}
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+  ~Timed() { sum_ += std::chrono::steady_clock::now() - began_; }
+
+ private:
+  std::chrono::steady_clock::duration& sum_;
+  std::chrono::steady_clock::time_point began_;
 };
 
 class HttpConnection {
@@ -69,7 +89,8 @@ class HttpConnection {
   boost::asio::awaitable<void> run();
   /// Closes a connection that waits for its next request. On the connection's own executor.
   void close_if_idle();
-  /// Since when it waits for a whole request header; nothing while it is at work or told to leave. Thread safe.
+  /// Since when it waits for a whole request header, or for the client's part of the handshake; nothing while it is at
+  /// work or told to leave. Thread safe.
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> idle_since() const;
   /// It is to be closed for want of a place. Thread safe.
   void leave() { leaving_ = true; }
@@ -82,6 +103,8 @@ class HttpConnection {
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::buffer_body>;
 
+  /// From now on it is idle.
+  void begin_waiting();
   /// Waits for a header. False: closed, timed out, or answered with a problem.
   boost::asio::awaitable<bool> read_header(Parser& parser);
   /// Answers the request whose header was read. False: the connection must close.
@@ -91,6 +114,12 @@ class HttpConnection {
   [[nodiscard]] std::optional<Response> admit(const Route* route, Request& request) const;
   [[nodiscard]] bool still_admitted(const Request& request) const;
   boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
+  /// The handler's answer, for whoever asks.
+  [[nodiscard]] Response dispatch(const Route& route, const Request& request) const;
+  /// The same on the threads of its lane. Nothing where too many wait for these.
+  boost::asio::awaitable<std::optional<Response>> dispatch_in_lane(const Route& route, const Request& request);
+  /// The same with a place among the uploads; the refusal where it never gets one.
+  boost::asio::awaitable<std::optional<Response>> dispatch_decoding(const Route& route, const Request& request);
   boost::asio::awaitable<bool> answer_upload(Parser& parser, const UploadHandler& handler, Request& request);
   /// The answer to an upload; unexpected where its body was not read to the end.
   boost::asio::awaitable<tl::expected<Response, Response>> take_upload(Parser& parser, const UploadHandler& handler,
@@ -117,6 +146,7 @@ class HttpConnection {
   /// Why an upload may not even begin; nothing if it may.
   [[nodiscard]] std::optional<Response> refuse_before_upload(const Parser& parser) const;
   [[nodiscard]] Response too_large() const;
+  [[nodiscard]] Response too_many_uploads() const;
   /// Writes all bytes of a stretch. False: the client is gone, or the file has fewer.
   boost::asio::awaitable<bool> send_file(const FileStretch& stretch);
   /// Writes all of `text`. The deadline is for progress: a slow reader is no fault, one that takes nothing is.
@@ -136,7 +166,8 @@ class HttpConnection {
   std::uint64_t bytes_in_ = 0;
   std::chrono::steady_clock::time_point started_;
   std::chrono::steady_clock::time_point body_started_;
-  bool keep_alive_ = true;  ///< the client and the limit of requests allow another one
+  std::chrono::steady_clock::duration for_client_{};  ///< of the present request: what its client takes or asks for
+  bool keep_alive_ = true;                            ///< the client and the limit of requests allow another one
   bool wants_continue_ = false;
   std::optional<ChunkedBody> chunked_;  ///< of a chunked body
   std::string framing_fault_;

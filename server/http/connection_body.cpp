@@ -31,6 +31,7 @@ Response HttpConnection::incomplete_body() const {
 }
 
 asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& parser) {
+  const Timed sent(for_client_);
   if (wants_continue_) {
     wants_continue_ = false;
     (void)co_await write_text("HTTP/1.1 100 Continue\r\n\r\n");

@@ -24,7 +24,7 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
     return handler(request);
   };
   auto begun = co_await shared_.handlers.run(begin);
-  auto settled = settle(std::move(begun));
+  auto settled = settle(std::move(begun), budgets());
   if (!settled) {
     co_return co_await send(request, std::move(settled.error()), true);
   }
@@ -37,6 +37,7 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
       request.request_id + "\r\n\r\nretry: 3000\n\n";
   auto last_sent = std::chrono::steady_clock::now();
   bool last = request.method == "HEAD";
+  std::optional<Timed> streamed;  // what went before its first byte is the daemon's time
   while (true) {
     if (!last) {
       auto look = [&source, &request] {
@@ -59,12 +60,16 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
       }
       last_sent = std::chrono::steady_clock::now();
       text.clear();
+      if (!streamed) {
+        streamed.emplace(for_client_);
+      }
     }
     if (last || shared_.stopping || !still_admitted(request)) {
       break;
     }
     co_await listener->wait(1s);
   }
+  streamed.reset();
   const Response summary;
   log(request, summary);
   co_return false;

@@ -69,6 +69,11 @@ std::optional<Response> HttpConnection::refuse_before_upload(const Parser& parse
   return std::nullopt;
 }
 
+Response HttpConnection::too_many_uploads() const {
+  return problem_response(HttpFault::Busy, "Too many uploads are waiting " +
+                                               naming_budget("uploads_waiting", budgets().uploads_waiting) + ".");
+}
+
 Response HttpConnection::too_large() const {
   return problem_response(HttpFault::BodyTooLarge, "An upload may not be that large " +
                                                        naming_budget("upload_bytes", budgets().upload_bytes) + ".");
@@ -94,9 +99,7 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
   const auto number = shared_.upload_places.join({request.caller.principal.token, client_, declared.value_or(0)},
                                                  std::chrono::steady_clock::now());
   if (!number) {
-    co_return tl::unexpected(problem_response(
-        HttpFault::Busy,
-        "Too many uploads are waiting " + naming_budget("uploads_waiting", budgets().uploads_waiting) + "."));
+    co_return tl::unexpected(too_many_uploads());
   }
   const UploadPlace place(shared_.upload_places, shared_.bell, *number);
   refusal = co_await wait_for_place(*number);
@@ -108,7 +111,7 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
     return handler(request);
   };
   auto begun = co_await shared_.uploads.run(begin);
-  auto settled = settle(std::move(begun));
+  auto settled = settle(std::move(begun), budgets());
   if (!settled) {
     co_return tl::unexpected(std::move(settled.error()));
   }
@@ -122,9 +125,24 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
     return finish_upload(*session);
   };
   auto finished = co_await shared_.decodings.run(finish);
-  auto answered = settle(std::move(finished));
+  auto answered = settle(std::move(finished), budgets());
   Response answer = answered ? std::move(*answered) : std::move(answered.error());
   co_return answer;
+}
+
+asio::awaitable<std::optional<Response>> HttpConnection::dispatch_decoding(const Route& route, const Request& request) {
+  const auto number =
+      shared_.upload_places.join({request.caller.principal.token, client_, 0}, std::chrono::steady_clock::now());
+  if (!number) {
+    co_return too_many_uploads();
+  }
+  const UploadPlace place(shared_.upload_places, shared_.bell, *number);
+  std::optional<Response> refusal = co_await wait_for_place(*number);
+  if (refusal) {
+    co_return refusal;
+  }
+  auto work = [this, &route, &request] { return dispatch(route, request); };
+  co_return co_await shared_.decodings.run(work);
 }
 
 asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser, UploadSession& session) {
@@ -141,7 +159,7 @@ asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser,
     }
     auto append = [this, &session, size = *count] { return session.append({chunk_.data(), size}); };
     auto appended = co_await shared_.uploads.run(append);
-    auto taken = settle(std::move(appended));
+    auto taken = settle(std::move(appended), budgets());
     if (!taken) {
       co_return std::move(taken.error());
     }

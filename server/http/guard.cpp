@@ -2,6 +2,7 @@
 
 #include "core/signal/text.hpp"
 #include "server/http/names.hpp"
+#include "server/store/budgets.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -138,7 +139,9 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
     return refuse(HttpFault::LengthRequired, "Transfer-Encoding and Content-Length exclude each other.");
   }
   if (head.target.size() > limits.target_bytes) {
-    return refuse(HttpFault::TargetTooLong, "The request target is longer than 8 KiB.");
+    return refuse(HttpFault::TargetTooLong,
+                  "The request target is longer than it may be " +
+                      naming_budget("target_bytes", static_cast<std::int64_t>(limits.target_bytes)) + ".");
   }
   if (!host) {
     return refuse(HttpFault::HostNotAllowed, "A Host header is needed.");

@@ -200,7 +200,8 @@ const std::vector<ProblemType>& problem_types() {
        "A body needs Content-Length. Uploads may come chunked instead, which is the one transfer coding that is "
        "taken."},
       {"body-too-large", 413, "Body too large", false, "The body is larger than this resource takes."},
-      {"target-too-long", 400, "Target too long", false, "The request target is longer than 8 KiB."},
+      {"target-too-long", 400, "Target too long", false,
+       "The request target is longer than the budget target_bytes allows."},
       {"unsupported-media-type", 415, "Unsupported media type", false,
        "The resource does not take bodies of this type."},
       {"unknown-parameter", 400, "Unknown query parameter", false,

@@ -3,6 +3,7 @@
 #include "core/signal/result.hpp"
 #include "server/http/message.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,15 +49,21 @@ class EventSource {
 };
 using EventHandler = std::function<Result<std::unique_ptr<EventSource>>(const Request&)>;
 
+/// Where a plain handler runs.
+enum class Lane : std::uint8_t {
+  Instant,  ///< on the I/O thread, for it never blocks: it answers while every pool thread is busy
+  Prompt,   ///< on the pool of the handlers: rows, and documents of their size
+  Slow,  ///< it reads a whole recording, for seconds: on two threads of their own, and nothing prompt waits behind it
+  Decoding,  ///< it decodes what was uploaded before, with a place among the uploads and on their threads
+};
+
 struct Route {
   std::string_view method;
   std::string_view pattern;             ///< `/v1/devices/{id}`
   std::string_view operation_id;        ///< as in openapi.yaml
   std::vector<std::string_view> query;  ///< parameters it takes; any other is refused
   std::variant<Handler, UploadHandler, EventHandler> handler;
-  /// A plain handler that never blocks and is answered on the I/O thread, so that it answers while every pool thread is
-  /// busy.
-  bool instant = false;
+  Lane lane = Lane::Prompt;
   /// The answer holds a secret: it is kept nowhere, so that it cannot be repeated by Idempotency-Key either.
   bool secret = false;
   /// The answer depends on the rows of the store alone, so that it stands until one of them changes (AnswerCache).
@@ -67,6 +74,11 @@ struct Route {
 /// The route, whose answer depends on the rows of the store alone.
 [[nodiscard]] inline Route from_rows(Route route) {
   route.from_rows = true;
+  return route;
+}
+
+[[nodiscard]] inline Route in_lane(Lane lane, Route route) {
+  route.lane = lane;
   return route;
 }
 

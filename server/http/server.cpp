@@ -31,9 +31,11 @@ struct HttpServer::Shared {
         bell(bell_in),
         handlers(static_cast<std::size_t>(options.handler_threads),
                  static_cast<std::size_t>(options.budgets.requests_waiting)),
+        slow(static_cast<std::size_t>(options.slow_threads),
+             static_cast<std::size_t>(options.budgets.requests_waiting)),
         uploads(static_cast<std::size_t>(options.upload_threads), 1024),
         decodings(static_cast<std::size_t>(options.budgets.decodings), 1024),
-        connection_shared{options, router,    bell_in,  hooks,         handlers,
+        connection_shared{options, router,    bell_in,  hooks,         handlers, slow,
                           uploads, decodings, stopping, upload_places, in_flight},
         work(asio::make_work_guard(io)),
         acceptor(io) {}
@@ -55,6 +57,7 @@ struct HttpServer::Shared {
   UploadPlaces upload_places{options.budgets, [this](const std::string& address) { return is_exempt(address); }};
   RequestsInFlight in_flight{options.budgets.requests_per_token};
   BoundedPool handlers;
+  BoundedPool slow;
   BoundedPool uploads;
   BoundedPool decodings;
   ConnectionShared connection_shared;
@@ -267,6 +270,7 @@ void HttpServer::stop(std::chrono::milliseconds grace) {
   }
   shared_->threads.clear();
   shared_->handlers.join();
+  shared_->slow.join();
   shared_->uploads.join();
   shared_->decodings.join();
 }

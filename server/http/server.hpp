@@ -27,9 +27,11 @@ struct HttpOptions {
   std::uint16_t port = 8477;
   int io_threads = 2;
   int handler_threads = 4;
+  int slow_threads = 2;  ///< for handlers that read a whole recording
   int upload_threads = 2;
   Budgets budgets;
-  std::vector<std::string> proxies;  ///< addresses and networks; exempt from the budgets of one address, as loopback is; their Forwarded counts
+  std::vector<std::string> proxies;  ///< addresses and networks; exempt from the budgets of one address, as loopback
+                                     ///< is; their Forwarded counts
   GuardLimits guard;
   std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };
@@ -42,7 +44,8 @@ struct AccessRecord {
   int status = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t bytes_out = 0;
-  double seconds = 0.0;
+  double seconds = 0.0;         ///< from the header to the end of the answer
+  double client_seconds = 0.0;  ///< of these: waiting for its body, or for what it asked to wait for; a stream goes on
   std::string request_id;
   std::string address;
   std::string token;                            ///< public id; empty if no token was required

@@ -62,7 +62,8 @@ struct Gauges {
 
 class Metrics {
  public:
-  /// One answered request. `route` is a template; empty: none matched.
+  /// One answered request. `route` is a template; empty: none matched. `seconds`: those that the daemon took, not those
+  /// that the client sent its body in, asked to wait for, or let a stream go on.
   void count_request(std::string_view method, std::string_view route, int status, double seconds,
                      std::uint64_t bytes_in, std::uint64_t bytes_out);
   /// One attempt at a job that ended: `succeeded`, `failed`, `retried`, `dead`, `cancelled`, `released`,

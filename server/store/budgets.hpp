@@ -33,6 +33,7 @@
   BUDGET(document_bytes, 1'048'576, 1024, 67'108'864, "Size of a JSON document that is sent")                           \
   BUDGET(page_bytes, 4'194'304, 4096, 268'435'456, "Size of a page of a list; one larger item comes alone")             \
   BUDGET(answer_cache_bytes, 33'554'432, 0, 17'179'869'184, "Answers kept until a row of the store changes; 0: none")    \
+  BUDGET(look_bytes, 1'073'741'824, 4096, 1'099'511'627'776, "Memory of a spectrum, histogram or spectrogram, 24 a row") \
   BUDGET(labels, 64, 0, 10'000, "Labels of a device")                                                                   \
   BUDGET(label_bytes, 256, 1, 65'536, "Length of a label's name, and of its value")                                     \
   BUDGET(name_bytes, 256, 1, 65'536, "Length of a name")                                                                \

@@ -2,9 +2,12 @@
 from __future__ import annotations
 
 import math
+import threading
+import time
 import unittest
 
 import samples
+from daemon import Daemon
 from suite import DaemonTest
 
 RATE = 100.0
@@ -71,6 +74,38 @@ class Looks(DaemonTest):
             self.assertEqual(found["expected"], expected)
             rows = [row[-1] for row in found["log10_ratio"]]
             self.assertAlmostEqual(sum(rows[10:]) / 10 - sum(rows[:10]) / 10, math.log10(9), delta=0.1)
+
+    def test_nothing_prompt_waits_behind_looks_that_take_long(self) -> None:
+        """Four spectra of 4 million samples had every thread of the handlers: /readyz answered after 17 s."""
+        values = samples.npy(samples.noise(2_000_000))
+        recording = self.expect(201, self.daemon.upload(values, rate_hz=100, columns="0=angular_rate:z:deg/s")).json["id"]
+        ended: list[float] = []
+        answers = []
+
+        def look() -> None:
+            answers.append(self.daemon.get(f"/v1/recordings/{recording}/spectrum?channel=0"))
+            ended.append(time.monotonic())
+        lookers = [threading.Thread(target=look) for _ in range(5)]
+        for each in lookers:
+            each.start()
+        while "driftlab_http_requests_in_flight 6\n" not in self.daemon.get("/metrics").text and not ended:
+            pass
+        self.expect(200, self.daemon.get("/readyz"))
+        answered = time.monotonic()
+        for each in lookers:
+            each.join()
+        for answer in answers:
+            self.expect(200, answer)
+        self.assertLess(answered, min(ended))
+
+    def test_a_look_takes_no_more_memory_than_its_budget(self) -> None:
+        with Daemon(arguments=("--budget", "look_bytes=12000")) as daemon:
+            for rows, status in ((500, 200), (501, 413)):
+                recording = daemon.upload(samples.gyro_csv(rows), rate_hz=100, columns=samples.GYRO_Z).json["id"]
+                for look in ("spectrum", "histogram", "spectrogram"):
+                    answer = daemon.get(f"/v1/recordings/{recording}/{look}?channel=gz")
+                    self.assertEqual(answer.status, status, answer.describe())
+                    self.assertEqual("budget look_bytes = 12000" in answer.text, status == 413)
 
     def test_what_cannot_be_looked_at_is_refused_with_the_parameter(self) -> None:
         id = self.upload(samples.noise(70, seed=8)[0])

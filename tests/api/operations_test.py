@@ -16,6 +16,7 @@ import urllib.request
 from pathlib import Path
 
 from daemon import PATIENCE_S, STORE, Daemon
+from events_test import stream
 from operating import csv, free_port, tool
 from suite import DaemonTest
 
@@ -53,6 +54,33 @@ class Watched(DaemonTest):
             self.skipTest("SKIPPED: promtool (package prometheus) is not here")
         checked = subprocess.run(["promtool", "check", "metrics"], input=page.text, capture_output=True, text=True, check=False)
         self.assertEqual((checked.returncode, checked.stderr), (0, ""), checked.stdout)
+
+    def test_the_time_of_requests_is_the_daemons_own(self) -> None:
+        with stream(self.daemon):
+            time.sleep(1.5 * SLOW)
+        with socket.create_connection(("127.0.0.1", self.daemon.port)) as slow:
+            slow.sendall(b"POST /v1/devices HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 16\r\nConnection: close\r\n\r\n")
+            time.sleep(1.5 * SLOW)
+            slow.sendall(b'{"name": "slow"}')
+            self.assertIn(b" 201 ", slow.recv(100))
+        job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 5000})).json["id"]
+        self.assertEqual(self.daemon.get(f"/v1/jobs/{job}", Prefer=f"wait={2 * SLOW}").json["state"], "running")
+        self.daemon.post(f"/v1/jobs/{job}/cancel", {})
+        ended = time.monotonic() + PATIENCE_S
+        counts = {}
+        while time.monotonic() < ended and 'route="/v1/events"' not in str(counts):  # counted when the daemon sees that nobody reads
+            page = self.daemon.get("/metrics").text
+            counts = dict(re.findall(r'^(driftlab_http_request_seconds_(?:bucket|count){.*}) (.*)$', page, re.MULTILINE))
+            time.sleep(0.1)
+        for route in ("/v1/events", "/v1/devices", "/v1/jobs/{id}"):
+            within = counts[f'driftlab_http_request_seconds_bucket{{route="{route}",le="1"}}']
+            self.assertEqual(within, counts[f'driftlab_http_request_seconds_count{{route="{route}"}}'], route)
+
+    def test_what_it_writes_is_for_its_user_alone(self) -> None:
+        self.expect(201, self.daemon.upload(csv(2000, 3)))
+        files = [path for path in self.daemon.data.rglob("*") if path.is_file()]
+        self.assertGreater(len(files), 3)
+        self.assertEqual([str(path) for path in files if path.stat().st_mode & 0o077], [])
 
     def test_every_log_line_is_an_object_and_names_its_request(self) -> None:
         self.daemon.get("/healthz", X_Request_Id="seen-in-the-log")

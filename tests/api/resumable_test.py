@@ -2,9 +2,12 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import os
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -46,6 +49,32 @@ class Resumable(DaemonTest):
         at_once = self.expect(200, self.daemon.upload(content, rate_hz=100, columns=samples.GYRO_Z))
         self.assertEqual(made.json["id"], at_once.json["id"])
         self.problem(404, "not_found", self.daemon.get(upload))
+
+    def test_nothing_prompt_waits_while_they_are_decoded(self) -> None:
+        """Four small files that become much had every thread of the handlers: /readyz answered after 13 s."""
+        ready = []
+        for i in range(5):
+            content = gzip.compress(b"gz\n" + b"0.%d\n" % (i + 1) * 3_000_000, 1)
+            ready.append(self.begin(content))
+            self.expect(204, self.put(ready[-1], 0, content))
+        ended: list[float] = []
+        answers: list[Answer] = []
+
+        def record(upload: str) -> None:
+            answers.append(self.daemon.request("POST", f"{upload}/recording?{META}"))
+            ended.append(time.monotonic())
+        recorders = [threading.Thread(target=record, args=(upload,)) for upload in ready]
+        for each in recorders:
+            each.start()
+        while "driftlab_http_requests_in_flight 6\n" not in self.daemon.get("/metrics").text and not ended:
+            pass
+        self.expect(200, self.daemon.get("/readyz"))
+        answered = time.monotonic()
+        for each in recorders:
+            each.join()
+        for answer in answers:
+            self.expect(201, answer)
+        self.assertLess(answered, min(ended))
 
     def test_what_nobody_goes_on_with_for_a_day_is_forgotten(self) -> None:
         content = samples.gyro_csv(seed=12)

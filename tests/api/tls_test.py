@@ -99,6 +99,17 @@ class Tls(unittest.TestCase):
             self.assertTrue(8 < time.monotonic() - start < 20)
         self.assertEqual(self.ask(daemon, "GET", "/healthz")[0], 200)
 
+    def test_those_who_never_greet_make_place_like_any_idle_one(self) -> None:
+        daemon = self.daemon("--budget", "connections=8")
+        silent = [self.enterContext(socket.create_connection(("127.0.0.1", daemon.port))) for _ in range(8)]
+        for _ in range(4):
+            self.assertEqual(self.ask(daemon, "GET", "/healthz")[0], 200)
+        silent[0].settimeout(5)  # well before its handshake is over time
+        try:
+            self.assertEqual(silent[0].recv(1), b"", "the one that was silent for longest made place")
+        except ConnectionResetError:
+            pass
+
     def test_an_end_can_be_told_from_a_cut(self) -> None:
         daemon = self.daemon()
         with socket.create_connection(("127.0.0.1", daemon.port), timeout=60) as raw, self.trusting().wrap_socket(raw, server_hostname="127.0.0.1") as tls:
