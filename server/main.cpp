@@ -15,6 +15,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -171,6 +173,7 @@ int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved, bool
 
 int main(int argc, char** argv) {
   driftlab::server::occupy_standard_descriptors();
+  ::umask(077);  // recordings are the lab's own, and the database holds the secrets of webhooks
   CLI::App app{
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
       "Flags win over DRIFTLAB_* variables, which win over the configuration file, which wins over defaults."};
