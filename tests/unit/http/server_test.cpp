@@ -53,7 +53,7 @@ TEST(HttpServer, AnswersAnInstantRouteWhileEveryHandlerThreadIsBusy) {
                 return Response{};
               })});
   Route health{"GET", "/alive", "alive", {}, Handler([](const Request&) -> Result<Response> { return Response{}; })};
-  health.instant = true;
+  health.lane = Lane::Instant;
   router.add(std::move(health));
   HttpOptions options;
   options.port = 0;
