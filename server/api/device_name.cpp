@@ -1,5 +1,7 @@
 #include "server/api/device_name.hpp"
 
+#include "server/store/principal.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -50,12 +52,12 @@ std::string fault_of_device_name(std::string_view name) {
 
 Status resolve_device_name(Store& store, Device& device) {
   if (!device.name.starts_with("dev_")) {
-    return {};
+    return require_device(device.name);
   }
   auto found = store.device(device.name);
   if (found) {
     device.name = found->name;
-    return {};
+    return require_device(device.name);
   }
   if (found.error().code != ErrorCode::NotFound) {
     return fail(found.error());

@@ -17,7 +17,7 @@ namespace driftlab::server {
 
 /// The device that an upload belongs to, by its name or its id. A name that begins with `dev_` must be the id of a
 /// device that exists, for no new device may be called so; `device.name` becomes that device's name. Errors:
-/// InvalidArgument, field "parameter" = "device".
+/// InvalidArgument, field "parameter" = "device"; forbidden where this thread's caller may not use that device.
 [[nodiscard]] Status resolve_device_name(Store& store, Device& device);
 
 }  // namespace driftlab::server

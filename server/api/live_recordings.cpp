@@ -248,9 +248,6 @@ Result<Response> create(Live& live, const Request& request) {
   if (auto resolved = resolve_device_name(live.context().store, metadata->device); !resolved) {
     return fail(resolved.error());
   }
-  if (auto allowed = require_device(metadata->device.name); !allowed) {
-    return fail(allowed.error());
-  }
   if (auto room = require_space(live.context()); !room) {
     return fail(room.error());
   }

@@ -165,6 +165,9 @@ Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem:
 }
 
 Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata) {
+  if (auto own = require_device(metadata.device.name); !own) {
+    return fail(own.error());
+  }
   if (auto allowed = require_quota(context, blob, metadata.device.name); !allowed) {
     return fail(allowed.error());
   }

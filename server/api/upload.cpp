@@ -229,11 +229,6 @@ Result<std::unique_ptr<UploadSession>> begin_upload(ApiContext& context, const R
       return fail(resolved.error());
     }
   }
-  if (!boundary) {
-    if (auto allowed = require_device(metadata.device.name); !allowed) {
-      return fail(allowed.error());
-    }
-  }
   if (auto room = require_space(context); !room) {
     return fail(room.error());
   }

@@ -14,7 +14,7 @@ from typing import Any
 
 import samples
 from contract import Contract
-from daemon import Answer, read_all
+from daemon import Answer, multipart, read_all
 from suite import DaemonTest
 
 SCOPES = ["read", "write", "run", "admin"]
@@ -493,6 +493,24 @@ class OtherDevices(GuardedDaemon):
         newcomer = self.token("write", devices=["phone-new"])
         self.expect(201, self.ask(newcomer, "POST", "/v1/devices", {"name": "phone-new"}))
         self.assertEqual([d["name"] for d in self.ask(newcomer, "GET", "/v1/devices").json["items"]], ["phone-new"])
+
+    def test_a_refused_upload_leaves_nothing(self) -> None:
+        """By every way in: a form, whose device comes with the file, and pieces, whose device comes after them."""
+        before = [self.daemon.files(folder) for folder in ("blobs", "columns")]
+        parts = [("metadata", json.dumps({"device": self.theirs["name"], "condition": {"kind": "static"}, "rate_hz": 100}).encode()),
+                 ("file", samples.gyro_csv(seed=41))]
+        for form in (parts, parts[::-1]):
+            body, content_type = multipart(*form)
+            self.problem(403, "forbidden", self.ask(self.limited, "POST", "/v1/recordings", body, {"Content-Type": content_type}))
+        content, tus = samples.gyro_csv(seed=42), {"Tus-Resumable": "1.0.0"}
+        upload = self.expect(201, self.ask(self.limited, "POST", "/v1/uploads", None, {**tus, "Upload-Length": str(len(content))})).headers["location"]
+        piece = {**tus, "Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"}
+        self.expect(204, self.ask(self.limited, "PATCH", upload, content, piece))
+        target = f"{upload}/recording?device={self.theirs['name']}&condition=static&rate_hz=100&columns={samples.GYRO_Z}"
+        self.problem(403, "forbidden", self.ask(self.limited, "POST", target))
+        self.assertEqual([self.daemon.files(folder) for folder in ("blobs", "columns")], before, "not even its bytes")
+        self.assertEqual(self.daemon.files("incoming"), [])
+        self.expect(204, self.ask(self.limited, "DELETE", upload, None, tus))
 
     def test_an_upload_under_way_is_there_for_who_began_it(self) -> None:
         tus = {"Tus-Resumable": "1.0.0"}
