@@ -172,6 +172,7 @@ struct Daemon::Parts {
     options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
     options.maintenance.each_turn = [this] {
       look_after_reserve();
+      look_after_uploads();
       readiness.look_after();
       tell_newer_schema();
       states.look_after();
@@ -280,7 +281,17 @@ struct Daemon::Parts {
     }
   }
 
+  /// Resumable uploads that nobody goes on with, once an hour: they lie in this daemon's own directory.
+  void look_after_uploads() {
+    const auto now = std::chrono::steady_clock::now();
+    if (api.uploads && (!uploads_looked_at || now - *uploads_looked_at > std::chrono::hours(1))) {
+      uploads_looked_at = now;
+      api.uploads->forget_expired();
+    }
+  }
+
   std::atomic<bool> stopping{false};
+  std::optional<std::chrono::steady_clock::time_point> uploads_looked_at;
   const Budgets budgets;
   std::stop_source stop_uploads;
   Metrics metrics;

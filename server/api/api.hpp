@@ -10,12 +10,14 @@
 #include "server/store/backups.hpp"
 #include "server/store/bad_states.hpp"
 #include "server/store/blobs.hpp"
+#include "server/store/resumable_uploads.hpp"
 #include "server/store/store.hpp"
 #include "server/store/webhook_store.hpp"
 #include "server/webhooks/destination.hpp"
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -49,6 +51,7 @@ struct ApiContext {
   std::function<void()> wake_deliveries = {};                   ///< there is something to deliver
   std::function<std::vector<StandingState>()> bad_states = {};  ///< what is wrong now
   KeysInFlight keys_in_flight = {};
+  std::shared_ptr<ResumableUploads> uploads = {};  ///< those by tus; null where there are no such routes
   Backups* backups = nullptr;
   int computing = 0;                          ///< threads that jobs share; 0: one for each core
   std::function<Result<int>()> workers = {};  ///< jobs that run at a time, in all processes that have the store

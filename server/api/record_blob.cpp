@@ -91,10 +91,10 @@ Result<DecodedBlob> decode(ApiContext& context, const IncomingBlob& incoming) {
 }
 
 /// Error: DiskFull naming the budget that `usage` of a device or a token and `more` bytes would pass.
-Status require_within(const DeviceUsage& usage, const IncomingBlob& more, std::string_view whose, const Budget& count,
+Status require_within(const DeviceUsage& usage, std::uint64_t more, std::string_view whose, const Budget& count,
                       const Budget& bytes, const Budgets& budgets) {
   const bool many = usage.recordings >= budgets.*count.value;
-  if (!many && usage.bytes + static_cast<std::int64_t>(more.size()) <= budgets.*bytes.value) {
+  if (!many && usage.bytes + static_cast<std::int64_t>(more) <= budgets.*bytes.value) {
     return {};
   }
   const Budget& passed = many ? count : bytes;
@@ -104,7 +104,8 @@ Status require_within(const DeviceUsage& usage, const IncomingBlob& more, std::s
 }
 
 /// Error: DiskFull naming the budget, where the device or whoever uploads has all it may have.
-Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::string& device_name) {
+Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::string& device_name,
+                     std::string_view upload) {
   const auto device = context.store.device(device_name);
   const auto usage = context.store.usage_of(device ? device->id : "", blob.sha256());
   if (!usage) {
@@ -113,19 +114,9 @@ Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::s
   if (usage->holds_these_bytes) {
     return {};
   }
-  const Budgets& budgets = context.budgets;
-  Status within = require_within(*usage, blob, "device", budget_of(&Budgets::recordings_per_device),
-                                 budget_of(&Budgets::device_bytes), budgets);
-  const Caller* const caller = caller_of_thread();
-  if (!within || caller == nullptr || caller->principal.token.empty()) {
-    return within;
-  }
-  const auto own = context.store.usage_of_token(caller->principal.token, blob.sha256());
-  if (!own) {
-    return fail(own.error());
-  }
-  return require_within(*own, blob, "token", budget_of(&Budgets::recordings_per_token),
-                        budget_of(&Budgets::token_bytes), budgets);
+  const Status within = require_within(*usage, blob.size(), "device", budget_of(&Budgets::recordings_per_device),
+                                       budget_of(&Budgets::device_bytes), context.budgets);
+  return within ? require_quota_of_token(context, blob.sha256(), blob.size(), upload) : within;
 }
 
 /// A conflict with a recording that is there says by which request that one is changed, and what is other: what the
@@ -164,11 +155,31 @@ Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem:
   return to_text(driftlab::to_json(*survey));
 }
 
-Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata) {
+Status require_quota_of_token(ApiContext& context, std::string_view sha256, std::uint64_t more,
+                              std::string_view upload) {
+  const Caller* const caller = caller_of_thread();
+  if (caller == nullptr || caller->principal.token.empty()) {
+    return {};
+  }
+  auto usage = context.store.usage_of_token(caller->principal.token, sha256);
+  if (!usage) {
+    return fail(usage.error());
+  }
+  if (context.uploads) {
+    const auto open = context.uploads->open_of(caller->principal.token, upload);
+    usage->recordings += open.uploads;
+    usage->bytes += open.bytes;
+  }
+  return require_within(*usage, more, "token", budget_of(&Budgets::recordings_per_token),
+                        budget_of(&Budgets::token_bytes), context.budgets);
+}
+
+Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata,
+                             std::string_view upload) {
   if (auto own = require_device(metadata.device.name); !own) {
     return fail(own.error());
   }
-  if (auto allowed = require_quota(context, blob, metadata.device.name); !allowed) {
+  if (auto allowed = require_quota(context, blob, metadata.device.name, upload); !allowed) {
     return fail(allowed.error());
   }
   auto decoded = decode(context, blob);

@@ -7,8 +7,16 @@
 
 namespace driftlab::server {
 
-/// `blob` is sealed and not empty. 201 with the recording, or 200 with the one that exists already.
-[[nodiscard]] Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata);
+/// `blob` is sealed and not empty; `upload` is the id of the resumable one that it came by, which no longer counts
+/// beside it. 201 with the recording, or 200 with the one that exists already. Errors: forbidden where the caller may
+/// not use the device; those of require_quota_of_token, of decoding and of the store.
+[[nodiscard]] Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata,
+                                           std::string_view upload = "");
+
+/// Refuses `more` bytes of this SHA-256 beyond what the token of this thread's caller may have: what it uploaded, and
+/// what it said of the resumable uploads under way, without `upload`. Error: DiskFull naming the budget.
+[[nodiscard]] Status require_quota_of_token(ApiContext& context, std::string_view sha256, std::uint64_t more,
+                                            std::string_view upload = "");
 
 /// Metadata and samples must fit together before anything is kept. What the survey finds as JSON text; of a drive's
 /// recording none of whose columns is said to be a sensor, that there is nothing to characterise. A device that is not

@@ -18,7 +18,6 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::uint64_t kLongestUpload = 8ULL * 1024 * 1024 * 1024;
 constexpr std::string_view kVersion = "1.0.0";
 constexpr std::size_t kCopied = 1024UL * 1024;
 
@@ -85,11 +84,15 @@ Result<Response> create(ApiContext& context, ResumableUploads& uploads, const Re
     return fail(ErrorCode::InvalidArgument, "Say how many bytes will come in Upload-Length, at least 1.",
                 {{"parameter", "Upload-Length"}});
   }
-  if (*length > kLongestUpload) {
-    return problem_response(HttpFault::BodyTooLarge,
-                            "An upload may have " + std::to_string(kLongestUpload) + " bytes at most.");
+  const Budgets& budgets = context.budgets;
+  if (*length > static_cast<std::uint64_t>(budgets.upload_bytes)) {
+    return problem_response(HttpFault::BodyTooLarge, "An upload may not be that large " +
+                                                         naming_budget("upload_bytes", budgets.upload_bytes) + ".");
   }
   uploads.forget_expired();
+  if (auto within = require_quota_of_token(context, "", *length); !within) {
+    return fail(within.error());
+  }
   if (auto room = require_space(context); !room) {
     return fail(room.error());
   }
@@ -312,7 +315,7 @@ Result<Response> record(ApiContext& context, ResumableUploads& uploads, const Re
   if (auto copied = copy_into(**blob, uploads.bytes_path(upload->id)); !copied) {
     return fail(copied.error());
   }
-  auto response = record_blob(context, **blob, *metadata);
+  auto response = record_blob(context, **blob, *metadata, upload->id);
   if (response) {
     (void)uploads.remove(upload->id);
   }
@@ -324,6 +327,7 @@ Result<Response> record(ApiContext& context, ResumableUploads& uploads, const Re
 void add_upload_routes(Router& router, ApiContext& context) {
   static const SystemClock machine;  // dates the files of its directory
   const auto uploads = std::make_shared<ResumableUploads>(context.data / "uploads", machine);
+  context.uploads = uploads;
   router.add({"POST", "/v1/uploads", "createUpload", {}, Handler([&context, uploads](const Request& request) {
                 return create(context, *uploads, request);
               })});

@@ -78,25 +78,34 @@ Result<ResumableUpload> ResumableUploads::create(std::uint64_t length, std::stri
   return upload;
 }
 
-Result<ResumableUpload> ResumableUploads::find(std::string_view id) {
-  if (!is_id(id, "upl")) {
-    return unknown(id);
-  }
-  const fs::path bytes = bytes_path(id);
-  const fs::path described = directory_ / (std::string(id) + ".about");
-  std::ifstream about(described, std::ios::binary);
+Result<ResumableUpload> ResumableUploads::described(std::string_view id) const {
+  const fs::path path = directory_ / (std::string(id) + ".about");
+  std::ifstream about(path, std::ios::binary);
   ResumableUpload upload;
   upload.id = id;
   if (!(about >> upload.length)) {
     std::error_code none;  // what is there and cannot be read is not gone: the client may go on with it later
-    return fs::exists(described, none) ? tl::unexpected(file_error(EIO, "read", described)) : unknown(id);
+    return fs::exists(path, none) ? tl::unexpected(file_error(EIO, "read", path)) : unknown(id);
   }
   about.get();
   std::getline(about, upload.file_name);
   std::getline(about, upload.token);
+  return upload;
+}
+
+Result<ResumableUpload> ResumableUploads::find(std::string_view id) {
+  if (!is_id(id, "upl")) {
+    return unknown(id);
+  }
+  auto known = described(id);
+  if (!known) {
+    return known;
+  }
+  ResumableUpload& upload = *known;
   if (is_foreign(upload)) {
     return unknown(id);
   }
+  const fs::path bytes = bytes_path(id);
   std::error_code error;
   upload.offset = fs::file_size(bytes, error);
   upload.expires_at = changed_at(bytes) + kKeptMicros;
@@ -107,7 +116,7 @@ Result<ResumableUpload> ResumableUploads::find(std::string_view id) {
   if (const auto running = writing_.find(id); running != writing_.end()) {
     upload.offset = running->second;
   }
-  return upload;
+  return known;
 }
 
 Status ResumableUploads::remove(std::string_view id) {
@@ -142,6 +151,23 @@ void ResumableUploads::forget_expired() {
       (void)remove_file(directory_ / (id + ".about"));
     }
   }
+}
+
+ResumableUploads::Open ResumableUploads::open_of(std::string_view token, std::string_view but) const {
+  Open open;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory_, error)) {
+    const std::string id = entry.path().stem();
+    if (entry.path().extension() != ".about" || id == but || changed_at(bytes_path(id)) + kKeptMicros < clock_.now()) {
+      continue;
+    }
+    const auto upload = described(id);
+    if (upload && upload->token == token) {
+      ++open.uploads;
+      open.bytes += static_cast<std::int64_t>(upload->length);
+    }
+  }
+  return open;
 }
 
 Result<std::unique_ptr<ResumableUploads::Piece>> ResumableUploads::append(std::string_view id, std::uint64_t offset) {

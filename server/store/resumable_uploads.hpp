@@ -44,6 +44,13 @@ class ResumableUploads {
   [[nodiscard]] std::filesystem::path bytes_path(std::string_view id) const;
   /// Removes uploads without a new piece for a day.
   void forget_expired();
+  struct Open {
+    std::int64_t uploads = 0;
+    std::int64_t bytes = 0;  ///< that they were said to have
+  };
+  /// What this token began and neither recorded nor removed, without the upload `but`. An upload that was forgotten
+  /// counts no more.
+  [[nodiscard]] Open open_of(std::string_view token, std::string_view but = "") const;
 
   /// Bytes at the end of one upload. Destroyed without `finish`: what came is kept, or, of a piece whose checksum is
   /// still to come, taken back.
@@ -73,6 +80,9 @@ class ResumableUploads {
   [[nodiscard]] Result<std::unique_ptr<Piece>> append(std::string_view id, std::uint64_t offset);
 
  private:
+  /// What its description says; offset and expiry are not part of it. Errors: NotFound; Io.
+  [[nodiscard]] Result<ResumableUpload> described(std::string_view id) const;
+
   std::filesystem::path directory_;
   const Clock& clock_;
   std::mutex mutex_;

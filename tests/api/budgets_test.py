@@ -21,7 +21,7 @@ import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from daemon import PROGRAM, Daemon, read_all
+from daemon import PROGRAM, Answer, Daemon, read_all
 from samples import stamped_csv
 from suite import DaemonTest
 
@@ -260,6 +260,22 @@ class UploadsShare(unittest.TestCase):
             self.assertEqual(daemon.upload(stamped_csv(400), device="other").status, 201)
 
 
+class PiecesAreUploads(unittest.TestCase):
+    def test_an_upload_in_pieces_is_no_longer_than_another(self) -> None:
+        content = stamped_csv(2000)
+        with Daemon(arguments=("--budget", "upload_bytes=10000")) as daemon:
+            whole = daemon.upload(content)
+            begun = begin_pieces(daemon, len(content))
+            for answer in (whole, begun):
+                self.assertEqual((answer.status, answer.json["code"]), (413, "body_too_large"), answer.describe())
+                self.assertIn("(budget upload_bytes = 10000)", answer.json["detail"])
+            self.assertEqual(begin_pieces(daemon, 10000).status, 201)
+
+
+def begin_pieces(daemon: Daemon, length: int) -> Answer:
+    return daemon.request("POST", "/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": str(length)})
+
+
 class TokensHaveBudgets(unittest.TestCase):
     """What one token may take, so that another has its share."""
 
@@ -335,6 +351,28 @@ class TokensHaveBudgets(unittest.TestCase):
         daemon.token = one
         self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{first.json['id']}", headers={"If-Match": "*"}).status, 204)
         self.assertEqual(daemon.upload(stamped_csv(500), device="a").status, 201, "what was removed makes room")
+
+    def test_what_was_begun_in_pieces_counts_as_kept(self) -> None:
+        daemon, one, other = self.daemon("recordings_per_token=3", "token_bytes=100000")
+        daemon.token = one
+        content = stamped_csv(1000)
+        begun = [begin_pieces(daemon, length) for length in (len(content), 70_000)]
+        self.assertEqual([answer.status for answer in begun], [201, 201])
+        for refused in (begin_pieces(daemon, 30_000), daemon.upload(stamped_csv(2000))):
+            self.assertEqual(refused.status, 507, refused.describe())
+            self.assertIn("The token has all that it may have (budget token_bytes = 100000)", refused.json["detail"])
+        self.assertEqual(begin_pieces(daemon, 1).status, 201)
+        self.assertIn("recordings_per_token = 3", begin_pieces(daemon, 1).json["detail"])
+        piece = {"Tus-Resumable": "1.0.0", "Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
+        upload = begun[0].headers["location"]
+        self.assertEqual(daemon.request("PATCH", upload, content, piece).status, 204)
+        recorded = daemon.post(f"{upload}/recording?device=a&condition=static")
+        self.assertEqual(recorded.status, 201, recorded.describe() + "an upload does not count beside its recording")
+        removed = daemon.request("DELETE", begun[1].headers["location"], headers={"Tus-Resumable": "1.0.0"})
+        self.assertEqual(removed.status, 204)
+        self.assertEqual(daemon.upload(stamped_csv(2000)).status, 201, "what was removed makes room")
+        daemon.token = other
+        self.assertEqual(begin_pieces(daemon, 30_000).status, 201)
 
 
 class WhatIsOldGoes(unittest.TestCase):

@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 
 import samples
-from daemon import Answer, Daemon, read_answer
+from daemon import PATIENCE_S, Answer, Daemon, read_answer
 from suite import DaemonTest
 
 TUS = {"Tus-Resumable": "1.0.0"}
@@ -89,7 +89,7 @@ class Resumable(DaemonTest):
         self.problem(404, "not_found", self.daemon.get(upload))
         self.assertEqual(self.daemon.request("HEAD", upload, headers=TUS).status, 404)
         self.assertEqual(self.put(upload, 500, content[500:]).status, 404)
-        self.assertTrue(part.exists(), "it is removed with the next upload that begins")
+        self.assertTrue(part.exists(), "it is removed with the next upload that begins, or within an hour")
         other = self.begin(content)
         self.assertFalse(part.exists())
         self.assertEqual(list(part.parent.glob(f"{state['id']}*")), [])
@@ -132,13 +132,26 @@ class Resumable(DaemonTest):
         self.problem(412, "precondition_failed", self.daemon.request("POST", "/v1/uploads", headers={"Upload-Length": "5"}))
         for length in ("", "0", "-1", "x"):
             self.problem(400, "invalid_argument", self.daemon.request("POST", "/v1/uploads", headers={**TUS, "Upload-Length": length}), parameter="Upload-Length")
-        self.problem(413, "body_too_large", self.daemon.request("POST", "/v1/uploads", headers={**TUS, "Upload-Length": str(9 << 30)}))
+        self.problem(413, "body_too_large", self.daemon.request("POST", "/v1/uploads", headers={**TUS, "Upload-Length": str((8 << 30) + 1)}))
         self.expect(204, self.daemon.request("DELETE", upload, headers=TUS))
         for id in (upload.rpartition("/")[2], "upl_nobody", "..", "upl_..%5C..%5Cdriftlab.db.xxxxxxxxx"):
             self.problem(404, "not_found", self.daemon.get(f"/v1/uploads/{id}"))
 
 
 class Restart(unittest.TestCase):
+    def test_what_was_forgotten_goes_without_another_upload(self) -> None:
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        with Daemon(Path(folder)) as daemon:
+            old, young = (daemon.request("POST", "/v1/uploads", headers={**TUS, "Upload-Length": "100"}).json["id"] for _ in range(2))
+        kept = Path(folder) / "uploads"
+        day_ago = time.time() - 25 * 3600
+        os.utime(kept / f"{old}.part", (day_ago, day_ago))
+        with Daemon(Path(folder)):
+            until = time.monotonic() + PATIENCE_S
+            while (kept / f"{old}.part").exists() and time.monotonic() < until:
+                time.sleep(0.05)
+            self.assertEqual(sorted(path.name for path in kept.iterdir()), [f"{young}.about", f"{young}.part"])
+
     def test_an_upload_goes_on_after_the_daemon_was_killed(self) -> None:
         """What was acknowledged is on the disk: a daemon that dies and comes back stands at the same offset."""
         content = samples.gyro_csv(seed=6)
