@@ -8,6 +8,7 @@
 #include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/record_blob.hpp"
+#include "server/api/upload.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/guarded_round.hpp"
@@ -18,6 +19,8 @@
 #include <cmath>
 #include <condition_variable>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <thread>
 
 namespace driftlab::server {
@@ -35,9 +38,23 @@ struct About {
   std::vector<std::string> columns;  ///< in the order of the values
 };
 
+/// What was within the budgets when it began is so to its end.
+const Budgets& budgets_of_what_began() {
+  static const Budgets boundless = [] {
+    Budgets budgets;
+    for (std::int64_t* const limit : {&budgets.labels, &budgets.label_bytes, &budgets.name_bytes}) {
+      *limit = std::numeric_limits<std::int64_t>::max();
+    }
+    return budgets;
+  }();
+  return boundless;
+}
+
 Result<About> about_of(const LiveRecording& recording) {
   const Json document = stored(recording.about_json);
-  auto metadata = metadata_from_json(to_text(document.at("metadata")), Request{});
+  Request began;
+  began.budgets = &budgets_of_what_began();
+  auto metadata = metadata_from_json(to_text(document.at("metadata")), began);
   if (!metadata) {
     return fail(metadata.error());
   }
@@ -46,6 +63,30 @@ Result<About> about_of(const LiveRecording& recording) {
 
 Unit unit_of(const About& about, const std::string& column) {
   return about.metadata.spec.columns.at(column).unit.value_or(Unit{});
+}
+
+Json to_json(const Principal& principal) {
+  return Json{{"token", principal.token},
+              {"name", principal.name},
+              {"scope", name_of(principal.scope)},
+              {"devices", principal.devices ? Json(*principal.devices) : Json(nullptr)}};
+}
+
+/// Who began it, for whom everything is done with it; nothing where an earlier release began it and did not say.
+std::optional<Principal> principal_of(const LiveRecording& recording) {
+  const Json about = stored(recording.about_json);
+  if (!about.contains("principal")) {
+    return std::nullopt;
+  }
+  const Json& kept = about.at("principal");
+  Principal principal;
+  principal.token = kept.at("token").get<std::string>();
+  principal.name = kept.at("name").get<std::string>();
+  principal.scope = parse_scope(kept.at("scope").get<std::string>()).value_or(Scope::Public);
+  if (!kept.at("devices").is_null()) {
+    principal.devices = kept.at("devices").get<std::vector<std::string>>();
+  }
+  return principal;
 }
 
 /// Names of the columns as the body has them, in its order; all of them sensors or a temperature with their unit.
@@ -84,13 +125,28 @@ class Live {
 
   LiveRecordings& recordings() { return recordings_; }
   ApiContext& context() { return context_; }
+  /// Held while one is begun, so that those that begin at once do not pass the budgets together.
+  std::mutex& beginning() { return begin_; }
 
-  /// Makes a recording of what is there and queues its characterisation. `job` is null where it could not be queued.
+  /// Whether the token that began it is valid still.
+  [[nodiscard]] bool is_admitted(const LiveRecording& recording) const {
+    const auto principal = principal_of(recording);
+    return !principal || context_.gate.is_valid(*principal);
+  }
+
+  /// Makes a recording of what is there, for whoever began it, and queues its characterisation. `job` is null where it
+  /// could not be queued, or where who began it may ask for none.
   Result<Json> finish(const std::string& id) {
     const std::lock_guard finishing(finish_);
     const auto live = recordings_.find(id);
     if (!live) {
       return fail(live.error());
+    }
+    Caller caller = caller_of_thread() != nullptr ? *caller_of_thread() : Caller{};
+    std::optional<ActingFor> acting;
+    if (auto principal = principal_of(*live)) {
+      caller.principal = std::move(*principal);
+      acting.emplace(caller);
     }
     auto about = about_of(*live);
     const auto samples = recordings_.samples(id);
@@ -150,6 +206,11 @@ class Live {
   }
 
   Json characterise(const std::string& recording) {
+    const Caller* const caller = caller_of_thread();
+    const bool may = caller == nullptr || caller->principal.scope >= Scope::Run;
+    if (!may || refuse_full_queue(context_.store, context_.budgets)) {
+      return nullptr;
+    }
     JobContext job_context = context_.job_context();
     const auto job = new_job(*find_job_kind("characterise"), Json{{"recordings", Json::array({recording})}},
                              Json::object(), job_context);
@@ -162,28 +223,39 @@ class Live {
     return to_json(queued->job);
   }
 
-  /// What nobody has added to for an hour is finished as it is; what cannot be a recording is dropped after a day.
+  /// What nobody has added to for an hour is finished as it is, at the latest six hours after a try that failed; what
+  /// cannot be a recording, or whose token was revoked, is dropped after a day.
   void sweep() {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, std::chrono::minutes(1), [this] { return stopping_; })) {
       lock.unlock();
       (void)guarded_round("live recordings", [this] {
-        for_untouched(kUnfinishedMicros, [this](const std::string& id) { (void)finish(id); });
-        for_untouched(kTokenMicros, [this](const std::string& id) { (void)recordings_.remove(id); });
+        const UtcMicros now = context_.clock.now();
+        for_each(recordings_.due_since(now - kUnfinishedMicros), [this](const std::string& id) { try_to_finish(id); });
+        for_each(recordings_.untouched_since(now - kTokenMicros),
+                 [this](const std::string& id) { (void)recordings_.remove(id); });
       });
       lock.lock();
     }
   }
 
+  void try_to_finish(const std::string& id) {
+    recordings_.put_off(id);  // an exception is a failure too
+    if (const auto live = recordings_.find(id); live && is_admitted(*live)) {
+      (void)finish(id);
+    }
+  }
+
   /// An exception over one recording leaves the others their turn.
-  void for_untouched(UtcMicros age, const std::function<void(const std::string& id)>& treat) {
-    for (const std::string& id : recordings_.untouched_since(context_.clock.now() - age)) {
+  static void for_each(const std::vector<std::string>& ids, const std::function<void(const std::string& id)>& treat) {
+    for (const std::string& id : ids) {
       (void)guarded_round("live recordings", [&] { treat(id); });
     }
   }
 
   ApiContext& context_;
   LiveRecordings recordings_;
+  std::mutex begin_;
   std::mutex finish_;
   std::mutex mutex_;
   std::condition_variable stopped_;
@@ -220,6 +292,34 @@ Result<LiveRecording> admitted(Live& live, const Request& request) {
   return recording;
 }
 
+/// The answer where the token that began it was revoked or has expired: that of the recording is worth no more.
+std::optional<Response> refuse_ended(const Live& live, const LiveRecording& recording) {
+  if (live.is_admitted(recording)) {
+    return std::nullopt;
+  }
+  Response response = problem_response(HttpFault::Unauthorized,
+                                       "The token that began this live recording was revoked, or has expired.");
+  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"driftlab\", error=\"invalid_token\"");
+  return response;
+}
+
+/// The answer where no further live recording may begin.
+std::optional<Response> refuse_more(Live& live, const std::string& owner) {
+  const Budgets& budgets = live.context().budgets;
+  const auto open = live.recordings().open_of(owner);
+  if (!owner.empty() && open.of_owner >= budgets.live_recordings_per_token) {
+    return problem_response(HttpFault::TooManyRequests,
+                            "The token has as many live recordings as it may have " +
+                                naming_budget("live_recordings_per_token", budgets.live_recordings_per_token) +
+                                "; finish one.");
+  }
+  if (open.all >= budgets.live_recordings) {
+    return problem_response(HttpFault::Busy, "Too many live recordings are not finished " +
+                                                 naming_budget("live_recordings", budgets.live_recordings) + ".");
+  }
+  return std::nullopt;
+}
+
 Json to_json(const LiveRecording& recording) {
   const Json about = stored(recording.about_json);
   return Json{{"id", recording.id},
@@ -241,7 +341,7 @@ Result<Response> create(Live& live, const Request& request) {
   if (!faults.none()) {
     return fail(faults.error());
   }
-  auto metadata = metadata_from_json(request.body, Request{});
+  auto metadata = metadata_from_json(request.body, request);
   if (!metadata) {
     return fail(metadata.error());
   }
@@ -257,8 +357,17 @@ Result<Response> create(Live& live, const Request& request) {
   if (body->at("device").is_string()) {
     (*body)["device"] = metadata->device.name;  // an id was resolved
   }
-  const Json about{{"metadata", *body}, {"device", metadata->device.name}, {"columns", columns}, {"created_at", now}};
-  const auto made = live.recordings().create(to_text(about), sha256_hex(token), columns.size());
+  const Principal& principal = request.caller.principal;
+  const Json about{{"metadata", *body},
+                   {"device", metadata->device.name},
+                   {"columns", columns},
+                   {"created_at", now},
+                   {"principal", to_json(principal)}};
+  const std::lock_guard beginning(live.beginning());
+  if (auto refusal = refuse_more(live, principal.token)) {
+    return std::move(*refusal);
+  }
+  const auto made = live.recordings().create(to_text(about), sha256_hex(token), columns.size(), principal.token);
   if (!made) {
     return fail(made.error());
   }
@@ -277,8 +386,12 @@ Result<Response> get(Live& live, const Request& request) {
 }
 
 Result<Response> finish(Live& live, const Request& request) {
-  if (const auto recording = admitted(live, request); !recording) {
+  const auto recording = admitted(live, request);
+  if (!recording) {
     return fail(recording.error());
+  }
+  if (auto ended = refuse_ended(live, *recording)) {
+    return std::move(*ended);
   }
   auto made = live.finish(request.parameters[0]);
   if (!made) {
@@ -302,6 +415,10 @@ class SamplesUpload final : public UploadSession {
   }
 
   [[nodiscard]] Result<Response> finish() override {
+    const auto recording = live_.recordings().find(id_);
+    if (auto ended = recording ? refuse_ended(live_, *recording) : std::nullopt) {
+      return std::move(*ended);
+    }
     const auto added = live_.recordings().add(id_, number_, bytes_);
     if (!added) {
       return fail(added.error());
@@ -323,6 +440,12 @@ Result<std::unique_ptr<UploadSession>> begin_samples(Live& live, const Request& 
   const auto recording = admitted(live, request);
   if (!recording) {
     return fail(recording.error());
+  }
+  if (auto ended = refuse_ended(live, *recording)) {
+    return std::make_unique<RefusedUpload>(std::move(*ended), kLongestPiece);
+  }
+  if (auto room = require_space(live.context()); !room) {
+    return fail(room.error());
   }
   const std::string_view text = request.parameter("sequence").value_or("");
   std::uint32_t number = 0;

@@ -4,6 +4,7 @@
 #include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/record_blob.hpp"
+#include "server/api/upload.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/base64.hpp"
 #include "server/store/resumable_uploads.hpp"
@@ -248,23 +249,12 @@ Result<std::unique_ptr<UploadSession>> begin_piece(ApiContext& context, Resumabl
                                        upload->length - *offset);
 }
 
-/// Refused as it is: nothing is read, the sentence is answered.
-class RefusedPiece final : public UploadSession {
- public:
-  explicit RefusedPiece(Response refusal) : refusal_(std::move(refusal)) {}
-  [[nodiscard]] Status append(std::span<const std::byte>) override { return {}; }
-  [[nodiscard]] Result<Response> finish() override { return std::move(refusal_); }
-
- private:
-  Response refusal_;
-};
-
 Result<std::unique_ptr<UploadSession>> patch(ApiContext& context, ResumableUploads& uploads, const Request& request) {
   if (auto refusal = refuse_version(request)) {
-    return std::make_unique<RefusedPiece>(std::move(*refusal));
+    return std::make_unique<RefusedUpload>(std::move(*refusal));
   }
   if (trimmed(request.header("content-type").value_or("")) != "application/offset+octet-stream") {
-    return std::make_unique<RefusedPiece>(
+    return std::make_unique<RefusedUpload>(
         problem_response(HttpFault::UnsupportedMediaType, "The type of a piece is application/offset+octet-stream."));
   }
   return begin_piece(context, uploads, request);

@@ -50,6 +50,8 @@
   BUDGET(columns_allowance_bytes, 134'217'728, 4096, 1'099'511'627'776, "Columns that any upload may become")           \
   BUDGET(columns_ratio, 200, 1, 100'000, "Bytes of columns that each byte of an upload may become beside that")         \
   BUDGET(notes_per_recording, 64, 1, 100'000, "Notes kept about a recording's file; the rest is counted")               \
+  BUDGET(live_recordings, 256, 0, 100'000, "Live recordings that are not finished; beyond it 503")                      \
+  BUDGET(live_recordings_per_token, 32, 0, 100'000, "Of these, those that one token began; beyond it 429")              \
   /* what is kept */                                                                                                    \
   BUDGET(recordings_per_device, 100'000, 1, 1'000'000'000, "Recordings of a device")                                    \
   BUDGET(device_bytes, 1'099'511'627'776, 4096, 9'000'000'000'000'000, "Bytes uploaded for a device")                   \

@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little, "pieces are kept as they come");
 
 constexpr std::size_t kMostValues = 100'000'000;
+constexpr UtcMicros kFirstPause = 60'000'000;
+constexpr UtcMicros kLongestPause = 6LL * 3600 * 1'000'000;
 
 struct PieceHead {
   std::uint32_t number = 0;
@@ -122,6 +124,7 @@ void LiveRecordings::load(const fs::path& about) {
   }
   text.get();
   std::getline(text, kept.recording.about_json);
+  std::getline(text, kept.recording.owner);
   const fs::path samples = path_of(kept.recording.id, ".samples");
   const std::uint64_t end =
       each_piece(samples, kept.recording.columns, [&](const PieceHead& head, std::span<const std::byte>) {
@@ -140,13 +143,15 @@ fs::path LiveRecordings::path_of(std::string_view id, std::string_view suffix) c
 }
 
 Result<LiveRecording> LiveRecordings::create(std::string_view about_json, std::string_view token_sha256,
-                                             std::size_t columns) {
+                                             std::size_t columns, std::string_view owner) {
   if (Status made = make_directories(directory_); !made) {
     return fail(made.error());
   }
   const UtcMicros now = clock_.now();
-  LiveRecording recording{make_id("live", now), std::string(about_json), std::string(token_sha256), columns, 0, 0, now};
-  const std::string text = std::to_string(columns) + ' ' + recording.token_sha256 + '\n' + recording.about_json + '\n';
+  LiveRecording recording{
+      make_id("live", now), std::string(about_json), std::string(token_sha256), std::string(owner), columns, 0, 0, now};
+  const std::string text = std::to_string(columns) + ' ' + recording.token_sha256 + '\n' + recording.about_json + '\n' +
+                           recording.owner + '\n';
   if (Status written = write_whole(path_of(recording.id, ".about"), O_EXCL, std::as_bytes(std::span(text))); !written) {
     return fail(written.error());
   }
@@ -154,7 +159,7 @@ Result<LiveRecording> LiveRecordings::create(std::string_view about_json, std::s
     return fail(synced.error());
   }
   const std::lock_guard lock(mutex_);
-  kept_.emplace(recording.id, Kept{recording, {}});
+  kept_.emplace(recording.id, Kept{recording, {}, 0, 0});
   return recording;
 }
 
@@ -173,6 +178,38 @@ std::vector<std::string> LiveRecordings::untouched_since(UtcMicros before) const
     }
   }
   return ids;
+}
+
+std::vector<std::string> LiveRecordings::due_since(UtcMicros before) const {
+  std::vector<std::string> ids = untouched_since(before);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(ids, [&](const std::string& id) {
+    const auto found = kept_.find(id);
+    return found == kept_.end() || found->second.put_off_to > clock_.now();
+  });
+  return ids;
+}
+
+void LiveRecordings::put_off(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = kept_.find(id); found != kept_.end()) {
+    UtcMicros pause = kFirstPause;
+    for (int failure = 0; failure < found->second.failures && pause < kLongestPause; ++failure) {
+      pause *= 2;
+    }
+    ++found->second.failures;
+    found->second.put_off_to = clock_.now() + std::min(pause, kLongestPause);
+  }
+}
+
+LiveRecordings::Open LiveRecordings::open_of(std::string_view owner) const {
+  const std::lock_guard lock(mutex_);
+  Open open;
+  for (const auto& [id, kept] : kept_) {
+    ++open.all;
+    open.of_owner += kept.recording.owner == owner ? 1 : 0;
+  }
+  return open;
 }
 
 Result<bool> LiveRecordings::add(std::string_view id, std::uint32_t number, std::span<const std::byte> rows) {

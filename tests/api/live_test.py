@@ -7,11 +7,12 @@ import math
 import random
 import struct
 import tempfile
+import time
 import unittest
 from pathlib import Path
 from typing import Any
 
-from daemon import PATIENCE_S, Daemon
+from daemon import PATIENCE_S, Answer, Daemon
 from suite import DaemonTest
 
 COLUMNS = {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}, "az": {"quantity": "specific_force", "axis": "z", "unit": "m/s^2"}}
@@ -95,6 +96,94 @@ class Live(DaemonTest):
         self.problem(422, "unknown_column", self.daemon.get(f"{live}/events?channel=gx"), parameter="channel")
         for about in ({**ABOUT, "columns": {}}, {**ABOUT, "columns": {"gz": {"quantity": "angular_rate", "axis": "z"}}}, {**ABOUT, "columns": {"time": COLUMNS["gz"]}}):
             self.problem(400, "invalid_argument", self.daemon.post("/v1/live-recordings", about))
+
+
+class Tokens(unittest.TestCase):
+    """A live recording is that of the token that began it: what that one may have, may do, and until when."""
+
+    def begin_daemon(self, *budgets: str) -> Daemon:
+        words = [word for budget in budgets for word in ("--budget", budget)]
+        daemon = self.enterContext(Daemon(arguments=("--require-tokens", "--workers", "1", *words)))
+        daemon.token = (daemon.data / "first-admin-token").read_text().strip()
+        return daemon
+
+    def token(self, daemon: Daemon, scope: str) -> dict[str, Any]:
+        return dict(daemon.post("/v1/tokens", {"name": scope, "scope": scope}).json)
+
+    def begin(self, daemon: Daemon, secret: str, id_: str = "live-1", **more: Any) -> Answer:
+        return daemon.request("POST", "/v1/live-recordings", {**ABOUT, "id": id_, **more}, {"Authorization": f"Bearer {secret}"})
+
+    def add(self, daemon: Daemon, live: Answer, number: int = 0, seed: int = 1) -> Answer:
+        headers = {"Live-Token": live.json["token"], "Content-Type": "application/octet-stream", "Cookie": "unrelated=1"}
+        return daemon.request("POST", f"{live.headers['location']}/samples?sequence={number}", rows(number * RATE, RATE, seed), headers)
+
+    def finish(self, daemon: Daemon, live: Answer) -> Answer:
+        return daemon.request("POST", f"{live.headers['location']}/finish", headers={"Live-Token": live.json["token"], "Cookie": "unrelated=1"})
+
+    def test_so_many_may_be_open(self) -> None:
+        daemon = self.begin_daemon("live_recordings=3", "live_recordings_per_token=2")
+        one, other = (self.token(daemon, "write")["secret"] for _ in range(2))
+        first = self.begin(daemon, one)
+        self.assertEqual((first.status, self.begin(daemon, one).status), (201, 201))
+        of_token = self.begin(daemon, one)
+        self.assertEqual((of_token.status, of_token.headers["retry-after"]), (429, "1"), of_token.describe())
+        self.assertIn("(budget live_recordings_per_token = 2)", of_token.json["detail"])
+        self.assertEqual(self.begin(daemon, other).status, 201)
+        of_all = self.begin(daemon, other)
+        self.assertEqual(of_all.status, 503, of_all.describe())
+        self.assertIn("(budget live_recordings = 3)", of_all.json["detail"])
+        self.assertEqual((self.add(daemon, first).status, self.finish(daemon, first).status), (204, 201))
+        self.assertEqual(self.begin(daemon, one).status, 201, "one that is finished makes room")
+
+    def test_its_recordings_are_those_of_the_token(self) -> None:
+        daemon = self.begin_daemon("recordings_per_token=1")
+        token = self.token(daemon, "write")
+        first, second = self.begin(daemon, token["secret"]), self.begin(daemon, token["secret"], "live-2")
+        for number, live in enumerate((first, second)):
+            self.assertEqual(self.add(daemon, live, seed=number + 1).status, 204)
+        made = self.finish(daemon, first)
+        self.assertEqual(made.status, 201, made.describe())
+        self.assertIsNone(made.json["job"], "a job takes the scope run")
+        self.assertEqual(daemon.items("/v1/jobs"), [])
+        [row] = [row for row in daemon.items("/v1/audit?limit=500") if row["object"] == made.json["recording"]["id"]]
+        self.assertEqual(row["actor"], token["id"])
+        full = self.finish(daemon, second)
+        self.assertEqual(full.status, 507, full.describe())
+        self.assertIn("(budget recordings_per_token = 1)", full.json["detail"])
+
+    def test_a_full_queue_takes_no_more(self) -> None:
+        daemon = self.begin_daemon("queued_jobs=1")
+        live = self.begin(daemon, self.token(daemon, "run")["secret"])
+        self.assertEqual(self.add(daemon, live).status, 204)
+        jobs = [daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": 1}).json["id"]]
+        until = time.monotonic() + PATIENCE_S
+        while daemon.get(f"/v1/jobs/{jobs[0]}").json["state"] == "queued" and time.monotonic() < until:
+            time.sleep(0.05)
+        jobs.append(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": 2}).json["id"])
+        made = self.finish(daemon, live)
+        self.assertEqual((made.status, made.json["job"]), (201, None), made.describe())
+        for job in jobs:
+            daemon.post(f"/v1/jobs/{job}/cancel")
+
+    def test_it_ends_with_the_token(self) -> None:
+        daemon = self.begin_daemon()
+        token = self.token(daemon, "run")
+        live = self.begin(daemon, token["secret"])
+        self.assertEqual(self.add(daemon, live).status, 204)
+        self.assertEqual(daemon.post(f"/v1/tokens/{token['id']}/revoke").status, 200)
+        for answer in (self.add(daemon, live, 1), self.finish(daemon, live)):
+            self.assertEqual((answer.status, answer.json["code"]), (401, "unauthorized"), answer.describe())
+            self.assertIn("was revoked", answer.json["detail"])
+        self.assertEqual(daemon.get(live.headers["location"]).json["samples"], RATE)
+        self.assertEqual(daemon.items("/v1/recordings"), [])
+
+    def test_its_metadata_have_the_budgets_of_any_other(self) -> None:
+        daemon = self.begin_daemon("labels=1")
+        secret = self.token(daemon, "write")["secret"]
+        many = self.begin(daemon, secret, labels={"a": "1", "b": "2"})
+        self.assertEqual(many.status, 413, many.describe())
+        self.assertIn("(budget labels = 1)", many.text)
+        self.assertEqual(self.begin(daemon, secret, labels={"a": "1"}).status, 201)
 
 
 class Restart(unittest.TestCase):
