@@ -110,7 +110,7 @@ class HttpConnection {
   /// Answers the request whose header was read. False: the connection must close.
   boost::asio::awaitable<bool> answer(Parser& parser);
   /// Waits until the upload of that number has its place. The answer where it never gets one.
-  boost::asio::awaitable<std::optional<Response>> wait_for_place(UploadPlaces::Number number);
+  boost::asio::awaitable<std::optional<Response>> wait_for_place(const Request& request, UploadPlaces::Number number);
   [[nodiscard]] std::optional<Response> admit(const Route* route, Request& request) const;
   [[nodiscard]] bool still_admitted(const Request& request) const;
   boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
@@ -125,7 +125,8 @@ class HttpConnection {
   boost::asio::awaitable<tl::expected<Response, Response>> take_upload(Parser& parser, const UploadHandler& handler,
                                                                        Request& request);
   /// Reads the body into the session. The answer where that fails.
-  boost::asio::awaitable<std::optional<Response>> receive(Parser& parser, UploadSession& session);
+  boost::asio::awaitable<std::optional<Response>> receive(Parser& parser, const Request& request,
+                                                          UploadSession& session);
   boost::asio::awaitable<bool> answer_events(const EventHandler& handler, const Request& request);
   /// `Prefer: wait=n`: asks again whenever the job moves, until the answer is final or n seconds are over.
   boost::asio::awaitable<Response> wait_for_job(const Route& route, const Request& request, Response response);
@@ -143,6 +144,8 @@ class HttpConnection {
   boost::asio::awaitable<bool> send(const Request& request, Response response, bool keep_alive);
   /// Sends a problem, lets the client read it, and closes. False.
   boost::asio::awaitable<bool> refuse(const Request& request, Response response);
+  /// The answer to an upload whose token was revoked, or expired, since it was admitted; nothing while it is valid.
+  [[nodiscard]] std::optional<Response> refuse_ended(const Request& request) const;
   /// Why an upload may not even begin; nothing if it may.
   [[nodiscard]] std::optional<Response> refuse_before_upload(const Parser& parser) const;
   [[nodiscard]] Response too_large() const;

@@ -39,13 +39,28 @@ struct UploadPlace {
 
 }  // namespace
 
-asio::awaitable<std::optional<Response>> HttpConnection::wait_for_place(UploadPlaces::Number number) {
+std::optional<Response> HttpConnection::refuse_ended(const Request& request) const {
+  // What is for everybody was admitted without a token.
+  if (request.caller.principal.scope == Scope::Public || still_admitted(request)) {
+    return std::nullopt;
+  }
+  Response response = problem_response(
+      HttpFault::Unauthorized, "The token was revoked, or expired, before the upload had ended; it was not taken.");
+  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"driftlab\", error=\"invalid_token\"");
+  return response;
+}
+
+asio::awaitable<std::optional<Response>> HttpConnection::wait_for_place(const Request& request,
+                                                                        UploadPlaces::Number number) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(budgets().upload_wait_seconds);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(std::string(UploadPlaces::kSubject), executor);
   while (!shared_.upload_places.has_place(number)) {
     if (shared_.stopping) {
       co_return problem_response(HttpFault::Busy, "The daemon stops; the upload had not begun.");
+    }
+    if (auto ended = refuse_ended(request)) {
+      co_return ended;
     }
     const auto left = deadline - std::chrono::steady_clock::now();
     if (left <= std::chrono::seconds(0)) {
@@ -102,7 +117,7 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
     co_return tl::unexpected(too_many_uploads());
   }
   const UploadPlace place(shared_.upload_places, shared_.bell, *number);
-  refusal = co_await wait_for_place(*number);
+  refusal = co_await wait_for_place(request, *number);
   if (refusal) {
     co_return tl::unexpected(std::move(*refusal));
   }
@@ -116,11 +131,14 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
     co_return tl::unexpected(std::move(settled.error()));
   }
   const std::unique_ptr<UploadSession> session = std::move(*settled);
-  refusal = co_await receive(parser, *session);
+  refusal = co_await receive(parser, request, *session);
   if (refusal) {
     co_return tl::unexpected(std::move(*refusal));
   }
-  auto finish = [&session, &request] {
+  auto finish = [this, &session, &request]() -> Result<Response> {
+    if (auto ended = refuse_ended(request)) {  // now that its turn has come
+      return std::move(*ended);
+    }
     const ActingFor acting(request.caller);
     return finish_upload(*session);
   };
@@ -137,7 +155,7 @@ asio::awaitable<std::optional<Response>> HttpConnection::dispatch_decoding(const
     co_return too_many_uploads();
   }
   const UploadPlace place(shared_.upload_places, shared_.bell, *number);
-  std::optional<Response> refusal = co_await wait_for_place(*number);
+  std::optional<Response> refusal = co_await wait_for_place(request, *number);
   if (refusal) {
     co_return refusal;
   }
@@ -145,7 +163,9 @@ asio::awaitable<std::optional<Response>> HttpConnection::dispatch_decoding(const
   co_return co_await shared_.decodings.run(work);
 }
 
-asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser, UploadSession& session) {
+asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser, const Request& request,
+                                                                 UploadSession& session) {
+  auto admitted_at = std::chrono::steady_clock::now();
   while (true) {
     const auto count = co_await read_piece(parser);
     if (!count) {
@@ -156,6 +176,12 @@ asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser,
     }
     if (*count == 0) {
       break;
+    }
+    if (const auto now = std::chrono::steady_clock::now(); now - admitted_at > std::chrono::seconds(1)) {
+      admitted_at = now;
+      if (auto ended = refuse_ended(request)) {
+        co_return ended;
+      }
     }
     auto append = [this, &session, size = *count] { return session.append({chunk_.data(), size}); };
     auto appended = co_await shared_.uploads.run(append);

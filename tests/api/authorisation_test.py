@@ -5,16 +5,19 @@ scope, and by tokens that ended. What must come of it is the operation's `x-scop
 """
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import re
+import select
+import socket
 import time
 import unittest
 from typing import Any
 
 import samples
 from contract import Contract
-from daemon import Answer, multipart, read_all
+from daemon import PATIENCE_S, Answer, multipart, read_all, read_answer
 from suite import DaemonTest
 
 SCOPES = ["read", "write", "run", "admin"]
@@ -198,6 +201,45 @@ class Sessions(GuardedDaemon):
             self.expect(204, self.daemon.request("DELETE", "/v1/session", headers={"Cookie": cookie, "Sec-Fetch-Site": "same-origin"}))
             connection.settimeout(10)
             read_all(connection)
+
+    def test_an_upload_ends_with_its_token(self) -> None:
+        """While its bytes come, when they all came, and while it waits for a place: nothing of it is kept."""
+        content = samples.stamped_csv(200_000)
+        head = f"POST /v1/recordings?device=phone-late&condition=static HTTP/1.1\r\nHost: localhost\r\nContent-Length: {len(content)}\r\n"
+
+        def begin(connection: socket.socket) -> str:
+            made = self.daemon.post("/v1/tokens", {"name": "uploader", "scope": "write"}).json
+            connection.sendall((head + f"Content-Type: text/csv\r\nAuthorization: Bearer {made['secret']}\r\n\r\n").encode())
+            return f"/v1/tokens/{made['id']}/revoke"
+        before = self.daemon.files("blobs")
+        with self.subTest("its last bytes come after the end"), self.daemon.connect() as connection:
+            revoke = begin(connection)
+            connection.sendall(content[:-100])
+            self.expect(200, self.daemon.post(revoke))
+            connection.sendall(content[-100:])
+            self.problem(401, "unauthorized", read_answer(connection))
+        with self.subTest("it is refused before its end"), self.daemon.connect() as connection:
+            revoke = begin(connection)
+            connection.sendall(content[:100_000])
+            self.expect(200, self.daemon.post(revoke))
+            sent, until = 100_000, time.monotonic() + PATIENCE_S
+            while not select.select([connection], [], [], 0.2)[0] and sent < len(content) - 70_000 and time.monotonic() < until:
+                connection.sendall(content[sent:sent + 70_000])
+                sent += 70_000
+            self.problem(401, "unauthorized", read_answer(connection))
+            self.assertLess(sent, len(content) - 70_000)
+        with self.subTest("it waits for a place"), contextlib.ExitStack() as stack:
+            for _ in range(16):  # budget uploads
+                begin(stack.enter_context(self.daemon.connect()))
+            waiting = stack.enter_context(self.daemon.connect())
+            revoke = begin(waiting)
+            time.sleep(0.3)
+            self.expect(200, self.daemon.post(revoke))
+            start = time.monotonic()
+            self.problem(401, "unauthorized", read_answer(waiting))
+            self.assertLess(time.monotonic() - start, 10.0)
+        self.assertEqual(self.daemon.files("blobs"), before)
+        self.assertNotIn("phone-late", [device["name"] for device in self.daemon.items("/v1/devices")])
 
     def test_an_event_stream_ends_with_its_token(self) -> None:
         made = self.daemon.post("/v1/tokens", {"name": "listener", "scope": "read"}).json
