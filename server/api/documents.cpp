@@ -174,6 +174,9 @@ Result<Response> refused_job(const Error& error) {
 }
 
 std::optional<Response> refuse_full_queue(Store& store, const Budgets& budgets) {
+  // The queue is everybody's: also those wait in it that the caller may not see.
+  const Caller whole;
+  const ActingFor nobody(whole);
   const auto counts = store.counts();
   if (!counts || counts->queued < budgets.queued_jobs) {
     return std::nullopt;

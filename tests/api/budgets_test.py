@@ -21,7 +21,7 @@ import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from daemon import PROGRAM, Answer, Daemon, read_all
+from daemon import PATIENCE_S, PROGRAM, Answer, Daemon, read_all
 from samples import stamped_csv
 from suite import DaemonTest
 
@@ -334,6 +334,26 @@ class TokensHaveBudgets(unittest.TestCase):
         self.assertEqual(state(second, one), "running", "its turn")
         for job, secret in ((second, one), (third, other)):
             daemon.token = secret
+            daemon.post(f"/v1/jobs/{job}/cancel")
+
+    def test_the_queue_is_that_of_all(self) -> None:
+        """A token that sees one device alone finds the queue as full as it is."""
+        daemon, one, _ = self.daemon("queued_jobs=1", "running_jobs_per_token=1")
+        limited = daemon.post("/v1/tokens", {"name": "limited", "scope": "run", "devices": ["a"]}).json["secret"]
+        daemon.token = one
+        jobs = [daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": 1}).json["id"]]
+        until = time.monotonic() + PATIENCE_S
+        while daemon.get(f"/v1/jobs/{jobs[0]}").json["state"] == "queued" and time.monotonic() < until:
+            time.sleep(0.05)
+        jobs.append(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": 2}).json["id"])
+        daemon.token = limited
+        for target, body in (("/v1/outage-evaluations", {"scenario": "paper", "runs": 2, "seed": 3}),
+                             ("/v1/jobs", {"kind": "outage_evaluation", "inputs": {}, "parameters": {"scenario": "paper", "runs": 2, "seed": 3}})):
+            full = daemon.post(target, body)
+            self.assertEqual(full.status, 503, full.describe())
+            self.assertIn("(budget queued_jobs = 1)", full.json["detail"])
+        daemon.token = one
+        for job in jobs:
             daemon.post(f"/v1/jobs/{job}/cancel")
 
     def test_what_is_kept(self) -> None:
