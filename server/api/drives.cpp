@@ -23,8 +23,10 @@ Result<Response> create_drive(ApiContext& context, const Request& request) {
     return fail(body.error());
   }
   Faults faults;
-  if (body->is_object() && body->contains("id") && (*body)["id"].is_string()) {
-    limit_text((*body)["id"].get<std::string>(), "name_bytes", request.budgets->name_bytes, "/id", faults);
+  for (const std::string member : {"id", "vehicle"}) {
+    if (body->is_object() && body->contains(member) && (*body)[member].is_string()) {
+      limit_text((*body)[member].get<std::string>(), "name_bytes", request.budgets->name_bytes, "/" + member, faults);
+    }
   }
   auto checked = check_stored_drive(*body, "", context.store, faults);
   if (!checked) {

@@ -94,6 +94,7 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   }
   Faults faults;
   const RecordingSpec spec = recording_spec_from_json(metadata, "", faults, FileMember::Refused);
+  limit_names(spec, *request.budgets, "", faults, &*body);
   Faults found_already;
   const RecordingTags tags = recording_tags_from_json(metadata, "", found_already);
   limit_tags(tags, *request.budgets, "", faults);

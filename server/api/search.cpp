@@ -92,18 +92,26 @@ class Hits {
       (lower_case(name).starts_with(wanted_) ? first_ : later_)[kind].push_back(std::move(found));
     }
   }
-  /// At most `limit`, in the order of the kinds, each with its share where there are too many.
-  [[nodiscard]] Json taken(std::size_t limit) const {
+  /// At most `limit`, and as many as fit into that many bytes, in the order of the kinds, each with its share where
+  /// there are too many. One that is larger comes alone.
+  [[nodiscard]] Json taken(std::size_t limit, std::size_t bytes) const {
     std::array<std::vector<Json>, kKinds> lists;
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
       lists[kind] = first_[kind];
       lists[kind].insert(lists[kind].end(), later_[kind].begin(), later_[kind].end());
     }
     std::array<std::size_t, kKinds> shares{};
+    std::size_t size = 0;
     for (bool more = true; more && limit > 0;) {
       more = false;
       for (std::size_t kind = 0; kind < kKinds && limit > 0; ++kind) {
         if (shares[kind] < lists[kind].size()) {
+          const std::size_t length = to_text(lists[kind][shares[kind]]).size() + 1;
+          if (size > 0 && size + length > bytes) {
+            limit = 0;
+            break;
+          }
+          size += length;
           ++shares[kind];
           --limit;
           more = true;
@@ -213,7 +221,7 @@ Result<Response> search(ApiContext& context, const Request& request) {
       return fail(jobs.error());
     }
   }
-  return json_response(200, Json{{"items", hits.taken(limit)}});
+  return json_response(200, Json{{"items", hits.taken(limit, static_cast<std::size_t>(context.budgets.page_bytes))}});
 }
 
 }  // namespace

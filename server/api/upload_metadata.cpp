@@ -7,6 +7,7 @@
 #include "server/api/documents.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace driftlab::server {
 namespace {
@@ -77,7 +78,7 @@ Status check_device_name(const std::string& name) {
   return {};
 }
 
-void read_device(const Json& document, Device& device, Faults& faults) {
+void read_device(const Json& document, Device& device, const Budgets& budgets, Faults& faults) {
   if (document.is_string()) {
     device.name = document.get<std::string>();
     return;
@@ -87,6 +88,10 @@ void read_device(const Json& document, Device& device, Faults& faults) {
   device.model = reader.text("model").value_or("");
   device.imu = reader.text("imu").value_or("");
   device.serial = reader.text("serial").value_or("");
+  for (const auto& [member, text] :
+       {std::pair{"model", &device.model}, std::pair{"imu", &device.imu}, std::pair{"serial", &device.serial}}) {
+    limit_text(*text, "name_bytes", budgets.name_bytes, reader.pointer(member), faults);
+  }
   reader.reject_unknown();
 }
 
@@ -138,6 +143,22 @@ void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::st
   limit_text(tags.session, "name_bytes", budgets.name_bytes, pointer + "/session", faults);
 }
 
+void limit_names(const RecordingSpec& spec, const Budgets& budgets, const std::string& pointer, Faults& faults,
+                 const Json* given) {
+  const auto is_given = [given](const char* member) { return given == nullptr || given->contains(member); };
+  for (const auto& [member, text] :
+       {std::pair{"id", &spec.id}, std::pair{"stream", &spec.stream}, std::pair{"calibration", &spec.calibration}}) {
+    if (is_given(member)) {
+      limit_text(*text, "name_bytes", budgets.name_bytes, pointer + "/" + member, faults);
+    }
+  }
+  for (const auto& [name, role] : spec.columns) {
+    if (is_given("columns")) {
+      limit_text(name, "name_bytes", budgets.name_bytes, pointer + "/columns", faults);
+    }
+  }
+}
+
 Result<UploadMetadata> metadata_from_query(const Request& request) {
   UploadMetadata metadata;
   metadata.device.name = request.parameter("device").value_or("");
@@ -170,6 +191,11 @@ Result<UploadMetadata> metadata_from_query(const Request& request) {
     }
     metadata.spec.columns = std::move(*roles);
   }
+  Faults faults;
+  limit_names(metadata.spec, *request.budgets, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
   if (auto tagged = tags_from_query(request, metadata.tags); !tagged) {
     return fail(tagged.error());
   }
@@ -185,10 +211,11 @@ Result<UploadMetadata> metadata_from_json(std::string_view text, const Request& 
   Faults faults;
   Json recording = *document;
   if (recording.is_object() && recording.contains("device")) {
-    read_device(recording["device"], metadata.device, faults);
+    read_device(recording["device"], metadata.device, *request.budgets, faults);
     recording.erase("device");
   }
   metadata.spec = recording_spec_from_json(recording, "", faults);
+  limit_names(metadata.spec, *request.budgets, "", faults);
   Faults found_already;
   metadata.tags = recording_tags_from_json(recording, "", found_already);
   limit_tags(metadata.tags, *request.budgets, "", faults);

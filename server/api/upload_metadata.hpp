@@ -21,6 +21,11 @@ struct UploadMetadata {
 /// A fault for each label, session and time beyond the budgets, which `pointer` leads to.
 void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults);
 
+/// A fault for each name of a specification beyond the budget name_bytes, which `pointer` leads to: its id, its stream,
+/// its calibration, its columns. Of a change, only what its document `given` states.
+void limit_names(const RecordingSpec& spec, const Budgets& budgets, const std::string& pointer, Faults& faults,
+                 const Json* given = nullptr);
+
 /// `?device=…&condition=…&rate_hz=…&columns=…&stream=…&id=…&trim_start_s=…&trim_end_s=…`
 /// and `&labels=firmware=1.5.0&session=…&recorded_at=…&file_name=…`; the condition in its compact form
 /// (`constant_rate:z:9:deg/s`) or its parts as `condition`, `axis`, `value`, `unit`, `direction`.

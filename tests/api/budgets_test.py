@@ -76,6 +76,42 @@ class OneClientCannotTakeIt(DaemonTest):
         refused({**big_model(1, 100), "name": "x" * 257}, "name_bytes", "/v1/models")
         refused({**big_model(1, 100), "why": "x" * 4097}, "note_bytes", "/v1/models")
 
+    def test_the_names_of_an_upload_have_the_length_of_any_other(self) -> None:
+        long = "x" * 257
+
+        def refused(answer: Answer, pointer: str) -> None:
+            problem = self.problem(413, "limit_exceeded", answer)
+            self.assertIn("(budget name_bytes = 256)", str(problem["detail"]))
+            self.assertEqual([error["pointer"] for error in problem["errors"]], [pointer])  # type: ignore[attr-defined]
+
+        def said(**more: object) -> Answer:
+            metadata = {"device": "long-names", "condition": {"kind": "static"}, **more}
+            return self.daemon.upload_parts(("metadata", json.dumps(metadata).encode()), ("file", stamped_csv(200)))
+        for member in ("model", "imu", "serial"):
+            refused(said(device={"id": "long-names", member: long}), f"/device/{member}")
+        for member in ("id", "stream", "calibration"):
+            refused(said(**{member: long}), f"/{member}")
+            refused(self.daemon.upload(stamped_csv(200), device="long-names", **{member: long}), f"/{member}")
+        refused(said(columns={long: {"quantity": "time", "unit": "s"}}), "/columns")
+        recording = self.expect(201, said()).json
+        target = f"/v1/recordings/{recording['id']}"
+        refused(self.daemon.request("PATCH", target, {"id": long}, {"If-Match": "*"}), "/id")
+        self.expect(200, self.daemon.request("PATCH", target, {"id": long[:256]}, {"If-Match": "*"}))
+
+    def test_a_search_answers_as_much_as_a_list(self) -> None:
+        with Daemon(arguments=("--budget", "name_bytes=60000", "--budget", "page_bytes=200000")) as daemon:
+            for number in range(12):
+                self.assertEqual(daemon.post("/v1/devices", {"name": f"many-{number}", "model": "m" * 50_000}).status, 201)
+            answer = daemon.get("/v1/search?q=many&limit=50")
+            self.assertEqual(answer.status, 200)
+            self.assertEqual([hit["title"] for hit in answer.json["items"]], ["many-0", "many-1", "many-2"])
+            self.assertLess(len(answer.body), 200_000)
+        with Daemon(arguments=("--budget", "name_bytes=60000", "--budget", "page_bytes=4096")) as daemon:
+            for number in range(2):
+                self.assertEqual(daemon.post("/v1/devices", {"name": f"many-{number}", "model": "m" * 50_000}).status, 201)
+            found = daemon.get("/v1/search?q=many").json["items"]
+            self.assertEqual([hit["title"] for hit in found], ["many-0"], "one that is larger comes alone")
+
     def test_notes_about_a_file_are_counted_not_kept(self) -> None:
         content = io.BytesIO()
         with zipfile.ZipFile(content, "w") as archive:
