@@ -120,6 +120,15 @@ struct Daemon::Parts {
     api.computing = computing_threads(settings);
     api.backups = &backups;
     api.version = program_version();
+    api.read = [this](const Request& request) {
+      Router::Match match = router.match(request.method, request.path);
+      if (match.route == nullptr || !std::holds_alternative<Handler>(match.route->handler)) {
+        return problem_response(HttpFault::NoSuchResource, "There is no resource at " + request.path + ".");
+      }
+      Request with_id = request;
+      with_id.parameters = std::move(match.parameters);
+      return dispatcher.run(*match.route, with_id);
+    };
     api.newer_schema = [this] { return store->newer_schema(); };
     api.workers = [this] { return others == nullptr ? Result<int>(jobs_at_once) : others->workers(); };
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);

@@ -55,6 +55,8 @@ struct ApiContext {
   Backups* backups = nullptr;
   int computing = 0;                          ///< threads that jobs share; 0: one for each core
   std::function<Result<int>()> workers = {};  ///< jobs that run at a time, in all processes that have the store
+  /// The answer to a GET of the API, for the caller that the request names.
+  std::function<Response(const Request&)> read = {};
   std::string_view version = DRIFTLAB_VERSION;
   std::function<std::string()> newer_schema = {};  ///< a sentence where the store has a newer program's schema
 
@@ -71,8 +73,14 @@ void add_all_routes(Router& router, ApiContext& context);
 /// Those of a worker: whether it lives, whether it can work, and its metrics.
 void add_health_routes(Router& router, ApiContext& context);
 
-/// Makes the answer of a plain route final: replays or remembers idempotent POSTs, maps errors to problems, adds an
-/// ETag, answers If-None-Match and keeps what depends on rows alone. Thread safe.
+/// The stored answer to the same request, as `replay` has it; what was too long to be kept is read again from where it
+/// is, so that it is as it stands now.
+[[nodiscard]] Response replay_whole(const ApiContext& context, const IdempotentReply& reply, const Request& request,
+                                    const std::string& body_sha256);
+
+/// Makes the answer of a plain route final: replays or remembers idempotent POSTs, refuses those that create where the
+/// disk is too full, maps errors to problems, adds an ETag, answers If-None-Match and keeps what depends on rows alone.
+/// Thread safe.
 class Dispatcher {
  public:
   explicit Dispatcher(ApiContext& context);
@@ -85,7 +93,9 @@ class Dispatcher {
   [[nodiscard]] Response read_rows(const Handler& handler, const Request& request);
   [[nodiscard]] Response give_kept(const std::string& key, std::uint64_t changes, const Request& request,
                                    const Response& kept);
-  [[nodiscard]] Response run_idempotent(const Handler& handler, const Request& request, const std::string& key);
+  [[nodiscard]] Response run_idempotent(const Route& route, const Request& request, const std::string& key);
+  /// What the handler says, unless it would create something and too little is free.
+  [[nodiscard]] Response make(const Route& route, const Request& request);
 
   ApiContext& context_;
   AnswerCache answers_;

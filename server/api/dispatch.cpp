@@ -1,6 +1,7 @@
 #include "core/signal/text.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/api/record_blob.hpp"
 #include "server/http/compression.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/names.hpp"
@@ -8,10 +9,15 @@
 #include "server/store/digest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace driftlab::server {
 namespace {
+
+/// POSTs that are done on a full disk too: they end or secure something, or write to another place.
+constexpr std::array<std::string_view, 7> kOnFullDisk{"cancelJob",   "openSession",   "createToken", "rotateToken",
+                                                      "revokeToken", "rotateWebhook", "createBackup"};
 
 /// Text for a terminal ends with its line, so that the prompt stands on one of its own.
 void end_line(Response& response) {
@@ -97,7 +103,7 @@ Response Dispatcher::run_checked(const Route& route, const Request& request) {
                                   "The answer holds a secret and is kept nowhere; send no Idempotency-Key.",
                                   {{"parameter", "Idempotency-Key"}}});
   }
-  Response response = key ? run_idempotent(handler, request, std::string(*key)) : run_handler(handler, request);
+  Response response = key ? run_idempotent(route, request, std::string(*key)) : make(route, request);
   finish(request, response);
   return response;
 }
@@ -159,7 +165,16 @@ std::optional<Response> Dispatcher::known(const Route& route, const Request& req
   return give_kept(key, changes, request, *kept);
 }
 
-Response Dispatcher::run_idempotent(const Handler& handler, const Request& request, const std::string& key) {
+Response Dispatcher::make(const Route& route, const Request& request) {
+  const bool creates = request.method == "POST" &&
+                       std::find(kOnFullDisk.begin(), kOnFullDisk.end(), route.operation_id) == kOnFullDisk.end();
+  if (const Status room = creates ? require_space(context_) : Status{}; !room) {
+    return problem_response(room.error());
+  }
+  return run_handler(std::get<Handler>(route.handler), request);
+}
+
+Response Dispatcher::run_idempotent(const Route& route, const Request& request, const std::string& key) {
   if (!is_request_id(key)) {
     return problem_response(malformed_idempotency_key());
   }
@@ -177,9 +192,9 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
     return problem_response(known.error());
   }
   if (const std::optional<IdempotentReply>& reply = *known) {
-    return replay(*reply, request, digest);
+    return replay_whole(context_, *reply, request, digest);
   }
-  Response response = run_handler(handler, request);
+  Response response = make(route, request);
   if (response.status >= 200 && response.status < 300) {
     const Status remembered =
         context_.store.remember_reply(reply_to_remember(own, request, digest, response, context_.clock.now()));
@@ -187,6 +202,36 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
       return problem_response(remembered.error());
     }
   }
+  return response;
+}
+
+Response replay_whole(const ApiContext& context, const IdempotentReply& reply, const Request& request,
+                      const std::string& body_sha256) {
+  Response response = replay(reply, request, body_sha256);
+  const auto location = std::find_if(response.headers.begin(), response.headers.end(),
+                                     [](const auto& header) { return header.first == "Location"; });
+  if (!response.body.empty() || location == response.headers.end() || !context.read) {
+    return response;
+  }
+  Request again;
+  again.method = "GET";
+  again.target = location->second;
+  again.path = location->second;
+  again.caller = request.caller;
+  again.request_id = request.request_id;
+  again.budgets = request.budgets;
+  Response now = context.read(again);
+  if (now.status != 200) {
+    return now;
+  }
+  std::erase_if(response.headers, [](const auto& header) { return header.first == "ETag"; });
+  for (const auto& header : now.headers) {
+    if (header.first == "ETag") {
+      response.headers.push_back(header);
+    }
+  }
+  response.body = std::move(now.body);
+  response.content_type = std::move(now.content_type);
   return response;
 }
 

@@ -52,6 +52,13 @@ Json problem_of(const Job& job) {
   return job.problem_json.empty() ? Json(nullptr) : stored(job.problem_json);
 }
 
+/// Whether an answer is what a GET of the member that was made gives too. What may be stored nowhere is read nowhere.
+bool is_readable_again(const Request& request, const Response& response) {
+  return !response.has_header("Cache-Control") && std::ranges::any_of(response.headers, [&](const auto& header) {
+    return header.first == "Location" && header.second.starts_with(request.path + "/");
+  });
+}
+
 }  // namespace
 
 Json stored(const std::string& text) {
@@ -157,7 +164,16 @@ IdempotentReply reply_to_remember(const std::string& key, const Request& request
   for (const auto& [name, value] : response.headers) {
     headers[name] = value;
   }
-  return {key, request.method, request.target, body_sha256, response.status, to_text(headers), response.body, now};
+  const bool kept = response.body.size() <= static_cast<std::size_t>(request.budgets->reply_bytes) ||
+                    !is_readable_again(request, response);
+  return {key,
+          request.method,
+          request.target,
+          body_sha256,
+          response.status,
+          to_text(headers),
+          kept ? response.body : std::string(),
+          now};
 }
 
 Result<Response> refused_job(const Error& error) {

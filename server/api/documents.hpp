@@ -32,8 +32,11 @@ namespace driftlab::server {
 /// What a key gets that is no `is_request_id`.
 [[nodiscard]] Error malformed_idempotency_key();
 
-/// The stored answer to the same request, marked as replayed; a problem where the key belongs to another request.
+/// The stored answer to the same request, marked as replayed; a problem where the key belongs to another request. The
+/// answer has no body where that was left out.
 [[nodiscard]] Response replay(const IdempotentReply& reply, const Request& request, const std::string& body_sha256);
+/// What is kept of an answer: of one that is longer than the budget reply_bytes and can be read again where its
+/// Location leads, its status and headers.
 [[nodiscard]] IdempotentReply reply_to_remember(const std::string& key, const Request& request,
                                                 const std::string& body_sha256, const Response& response,
                                                 UtcMicros now);

@@ -167,7 +167,7 @@ class RecordingUpload final : public UploadSession {
     // Metadata sent as a part are as much of the body as the file is.
     const std::string digest = sha256_hex(blob_->sha256() + metadata_text_ + fields_text());
     if (const std::optional<IdempotentReply>& reply = *known) {
-      return replay(*reply, request_, digest);
+      return replay_whole(context_, *reply, request_, digest);
     }
     auto response = record();
     if (response && response->status < 300) {

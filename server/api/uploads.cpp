@@ -94,9 +94,6 @@ Result<Response> create(ApiContext& context, ResumableUploads& uploads, const Re
   if (auto within = require_quota_of_token(context, "", *length); !within) {
     return fail(within.error());
   }
-  if (auto room = require_space(context); !room) {
-    return fail(room.error());
-  }
   const auto upload = uploads.create(*length, file_name_in(request.header("upload-metadata").value_or("")));
   if (!upload) {
     return fail(upload.error());

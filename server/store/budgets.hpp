@@ -57,6 +57,7 @@
   BUDGET(device_bytes, 1'099'511'627'776, 4096, 9'000'000'000'000'000, "Bytes uploaded for a device")                   \
   BUDGET(recordings_per_token, 1'000'000, 1, 1'000'000'000, "Recordings that one token has uploaded")                    \
   BUDGET(token_bytes, 10'995'116'277'760, 4096, 9'000'000'000'000'000, "Bytes that one token has uploaded")              \
+  BUDGET(reply_bytes, 65'536, 0, 67'108'864, "Of an answer kept for its Idempotency-Key; a longer one is read again")   \
   BUDGET(least_free_bytes, 268'435'456, 0, 1'099'511'627'776, "Free on the disk, or uploads and jobs are refused")      \
   BUDGET(reserve_bytes, 16'777'216, 0, 1'099'511'627'776, "Kept in a file so that deleting works on a full disk")       \
   BUDGET(orphan_hours, 24, 0, 8760, "Files without a row are removed after this time; at once on a full disk")          \

@@ -296,6 +296,41 @@ class UploadsShare(unittest.TestCase):
             self.assertEqual(daemon.upload(stamped_csv(400), device="other").status, 201)
 
 
+class NothingIsMadeOnAFullDisk(DaemonTest):
+    arguments = ("--budget", "least_free_bytes=1000000000000")
+
+    def test_what_creates_is_refused_and_what_ends_is_not(self) -> None:
+        refused, done = set(), set()
+        for path, operations in self.contract.paths.items():
+            if "post" not in operations:
+                continue
+            name, content = operations["post"]["operationId"], operations["post"].get("requestBody", {}).get("content", {})
+            if not content or "application/json" in content:
+                answer = self.daemon.post(re.sub(r"\{[^}]*\}", "absent", path), {} if content else None)
+                full = answer.status == 507 and "(budget least_free_bytes = " in answer.json["detail"]
+                (refused if full else done).add(name)
+        self.assertEqual(done, {"cancelJob", "openSession", "createToken", "rotateToken", "revokeToken", "rotateWebhook", "createBackup"})
+        for name in ("createJob", "createModel", "createStudy", "createCalibration", "createDrive", "createDevice", "moveRegressionAnchor",
+                     "createOutageEvaluation", "createDriveEvaluation", "createLiveRecording"):
+            self.assertIn(name, refused)
+        self.problem(507, "disk_full", self.daemon.upload(stamped_csv(200)))
+
+
+class RepeatedAnswers(DaemonTest):
+    def test_a_long_one_is_read_again_and_not_kept(self) -> None:
+        key = {"Idempotency-Key": "long"}
+        long, short = big_model(1, 200_000), big_model(2, 1000)
+        made = self.expect(201, self.daemon.post("/v1/models", long, key))
+        again = self.expect(201, self.daemon.post("/v1/models", long, key))
+        self.assertEqual((again.json, again.headers["location"]), (made.json, made.headers["location"]))
+        self.assertEqual(again.headers["idempotency-replayed"], "true")
+        self.expect(201, self.daemon.post("/v1/models", short, {"Idempotency-Key": "short"}))
+        self.assertEqual(sorted(length > 0 for [length] in self.daemon.rows("SELECT length(body) FROM idempotent_replies")), [False, True])
+        self.problem(422, "idempotency_key_reused", self.daemon.post("/v1/models", short, key))
+        self.expect(204, self.daemon.request("DELETE", made.headers["location"]))
+        self.problem(404, "not_found", self.daemon.post("/v1/models", long, key))
+
+
 class PiecesAreUploads(unittest.TestCase):
     def test_an_upload_in_pieces_is_no_longer_than_another(self) -> None:
         content = stamped_csv(2000)
