@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kOwn = 32;
 /// After one that failed the timer waits so long, or its own time if that is less.
 constexpr std::int64_t kPauseMicros = 3'600'000'000;
+/// Copies of a store in which something is damaged, that stay beside those that are kept.
+constexpr std::size_t kKeepDamaged = 3;
 
 /// Behind the name of one that is being made (server/store/sqlite/backup.cpp), and of one that is being removed.
 constexpr const char* kUnderConstruction = ".part";
@@ -39,6 +42,11 @@ std::optional<UtcMicros> time_of(const std::string& name) {
   }
   const UtcMicros time = static_cast<UtcMicros>(::timegm(&parts)) * 1'000'000;
   return name_at(time) == name ? std::optional(time) : std::nullopt;
+}
+
+/// Whether there was a folder of it at its end.
+bool is_made(const Backup& backup) {
+  return backup.state == BackupState::Complete || backup.state == BackupState::Damaged;
 }
 
 }  // namespace
@@ -134,8 +142,7 @@ Result<std::vector<Backup>> Backups::list() const {
     return all;
   }
   for (const Backup& backup : own) {
-    const bool made = backup.state == BackupState::Complete || backup.state == BackupState::Damaged;
-    if (std::erase_if(*all, [&](const Backup& found) { return found.name == backup.name; }) > 0 || !made) {
+    if (std::erase_if(*all, [&](const Backup& found) { return found.name == backup.name; }) > 0 || !is_made(backup)) {
       all->push_back(backup);
     }
   }
@@ -156,14 +163,18 @@ bool Backups::is_due() const {
     return false;
   }
   const UtcMicros now = clock_.now();
+  std::vector<Backup> made = complete().value_or(std::vector<Backup>{});  // also by processes before this one
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     const std::int64_t pause = std::min(options_.every_micros, kPauseMicros);
     if (!own_.empty() && own_.back().state == BackupState::Failed && now - own_.back().begun_at < pause) {
       return false;
     }
+    std::copy_if(own_.begin(), own_.end(), std::back_inserter(made), [](const Backup& own) { return is_made(own); });
   }
-  return now - newest().value_or(now - options_.every_micros) >= options_.every_micros;
+  // One of a damaged store counts: what is damaged stays so, and another copy of it at once helps nobody.
+  return std::none_of(made.begin(), made.end(),
+                      [&](const Backup& each) { return now - each.begun_at < options_.every_micros; });
 }
 
 void Backups::run(const std::stop_token& stop) {
@@ -198,9 +209,9 @@ void Backups::make(const std::stop_token& stop) {
     const Status ready = make_directories(options_.directory);
     report = ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
   });
-  if (report && report->faults.empty()) {
+  if (report) {
     // Before it is told, so that who hears of it finds the others gone.
-    (void)guarded_round("backups", [this] { forget_old(); });
+    (void)guarded_round("backups", [&] { forget_old(report->faults.empty()); });
   }
   Backup ended;
   {
@@ -233,14 +244,28 @@ void Backups::forget_unfinished() {
   }
 }
 
-/// Never after a damaged one: the older ones may be the only sound ones then.
-void Backups::forget_old() {
-  const std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
-  for (std::size_t i = 0; options_.keep > 0 && i + options_.keep < found.size(); ++i) {
+/// Sound ones never after a damaged one: the older ones may be the only sound ones then. A damaged one never takes the
+/// place of a sound one.
+void Backups::forget_old(bool sound) {
+  if (options_.keep == 0) {
+    return;
+  }
+  std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
+  const auto damaged = std::stable_partition(found.begin(), found.end(),
+                                             [](const Backup& each) { return each.state == BackupState::Complete; });
+  if (sound) {
+    remove_but_newest(found.begin(), damaged, options_.keep);
+  }
+  remove_but_newest(damaged, found.end(), kKeepDamaged);
+}
+
+void Backups::remove_but_newest(std::vector<Backup>::const_iterator oldest, std::vector<Backup>::const_iterator end,
+                                std::size_t keep) const {
+  for (; static_cast<std::size_t>(end - oldest) > keep; ++oldest) {
     std::error_code ignored;
     // First a name that is no backup's: what a crash leaves half removed must not look complete.
-    const fs::path leaving = options_.directory / (found[i].name + kLeaving);
-    fs::rename(options_.directory / found[i].name, leaving, ignored);
+    const fs::path leaving = options_.directory / (oldest->name + kLeaving);
+    fs::rename(options_.directory / oldest->name, leaving, ignored);
     fs::remove_all(leaving, ignored);
   }
 }

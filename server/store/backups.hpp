@@ -4,9 +4,9 @@
 ///
 /// Each is a folder `<directory>/<name>` as `driftlabd backup` makes it (server/store/sqlite/backup.hpp), named by the
 /// moment that it holds. A folder appears under that name only when its backup is complete; an unfinished one has
-/// another name and does not count as a backup. The newest backups are kept (`BackupOptions::keep`); older ones are
-/// removed after a backup that found no damage. An exception ends a backup as `Failed`, and the thread goes on
-/// (server/store/guarded_round.hpp).
+/// another name and does not count as a backup. The newest sound backups are kept (`BackupOptions::keep`); older ones
+/// are removed after a backup that found no damage, and of the damaged ones a few stay besides. An exception ends a
+/// backup as `Failed`, and the thread goes on (server/store/guarded_round.hpp).
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/store_report.hpp"
@@ -56,7 +56,7 @@ struct BackupOptions {
       make = {};
   std::function<StoreReport(const std::filesystem::path& backup)> describe = {};  ///< a complete one; may be empty
   std::int64_t every_micros = 0;                                                  ///< 0: only when asked
-  std::size_t keep = 0;                                                           ///< of complete ones; 0: all
+  std::size_t keep = 0;                                                           ///< of sound ones; 0: all of all
   std::function<void(const Backup&)> ended = {};  ///< told of each, on the thread that made it
 };
 
@@ -70,7 +70,7 @@ class Backups {
   ~Backups() { stop(); }
 
   /// Removes what a process that was killed left unfinished, and starts the timer: the first backup is due when the
-  /// newest of the directory is old enough.
+  /// newest of the directory, sound or damaged, is old enough.
   void start();
   /// Cancels the backup under way, whose files are removed, and blocks until that is done.
   void stop();
@@ -91,7 +91,9 @@ class Backups {
   void run(const std::stop_token& stop);
   /// Makes the backup that is under way.
   void make(const std::stop_token& stop);
-  void forget_old();
+  void forget_old(bool sound);
+  void remove_but_newest(std::vector<Backup>::const_iterator oldest, std::vector<Backup>::const_iterator end,
+                         std::size_t keep) const;
   void forget_unfinished();
   [[nodiscard]] bool is_due() const;
 

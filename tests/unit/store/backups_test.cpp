@@ -137,6 +137,63 @@ TEST_F(MadeBackups, ADamagedStoreCostsNoOlderBackup) {
   EXPECT_THAT(folders(), SizeIs(2));
 }
 
+TEST_F(MadeBackups, AfterADamagedOneTheTimerWaitsItsTimeAlsoAfterARestart) {
+  report_ = StoreReport{3, 4096, {"The bytes of f00d are damaged."}};
+  BackupOptions timed = options(24 * kHour, 2);
+  timed.describe = [this](const std::filesystem::path&) { return *report_; };
+  const auto round = [&] {
+    Backups backups(clock_, timed);
+    backups.start();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // one that is due begins at once
+  };
+  for (int rounds = 0; rounds < 2; ++rounds) {
+    round();
+    EXPECT_THAT(folders(), SizeIs(1)) << "one, and no other at once";
+    clock_.advance(23 * kHour / 2);
+  }
+  clock_.advance(kHour);
+  round();
+  EXPECT_THAT(folders(), SizeIs(2)) << "a day has passed";
+}
+
+TEST_F(MadeBackups, OfDamagedOnesAFewStayBesideTheSoundOnes) {
+  BackupOptions kept = options(0, 2);
+  kept.describe = [](const std::filesystem::path& backup) {
+    return StoreReport{0, 0, std::vector<std::string>(std::filesystem::is_empty(backup) ? 0 : 1, "Damaged.")};
+  };
+  kept.make = [this](const std::filesystem::path& target, const std::string&, const std::stop_token&) {
+    std::filesystem::create_directories(report_->faults.empty() ? target : target / "damage");
+    return report_;
+  };
+  Backups backups(clock_, kept);
+  backups.start();
+  std::size_t made = 0;
+  const auto make = [&](std::size_t count, std::vector<std::string> faults) {
+    report_ = StoreReport{3, 4096, std::move(faults)};
+    for (std::size_t i = 0; i < count; ++i) {
+      clock_.advance(kHour);
+      EXPECT_TRUE(backups.begin());
+      (void)ended(++made);
+    }
+  };
+  const auto states = [&] {
+    std::vector<BackupState> found;
+    const auto listed = backups.list();
+    for (const Backup& each : *listed) {
+      found.push_back(each.state);
+    }
+    return found;
+  };
+  constexpr auto kSound = BackupState::Complete;
+  constexpr auto kDamaged = BackupState::Damaged;
+  make(2, {});
+  make(6, {"The bytes of f00d are damaged."});
+  EXPECT_THAT(states(), ElementsAre(kDamaged, kDamaged, kDamaged, kSound, kSound)) << "newest first";
+  make(1, {});
+  EXPECT_THAT(states(), ElementsAre(kSound, kDamaged, kDamaged, kDamaged, kSound)) << "two sound ones, as told";
+  EXPECT_THAT(folders(), SizeIs(5));
+}
+
 TEST_F(MadeBackups, OneThatFailsSaysWhyAndTheTimerWaits) {
   report_ = fail(ErrorCode::DiskFull, "The disk is full.");
   Backups backups(clock_, options(kHour));
