@@ -88,6 +88,37 @@ class Backups(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertFalse((self.folder / "third").exists())
 
+    def test_a_directory_may_be_named_with_a_slash_behind_it(self) -> None:
+        with Daemon(self.folder / "data") as daemon:
+            recording = daemon.upload(csv(500)).json["id"]
+        for name, data in (("slash/", "back/"), ("slash-and-dot/.", "back-with-dot/.")):
+            made = tool(PROGRAM, "backup", "--data", str(self.folder / "data"), "--to", f"{self.folder}/{name}")
+            self.assertEqual((made.returncode, made.stderr), (0, ""))
+            back = tool(PROGRAM, "restore", "--from", f"{self.folder}/{name}", "--data", f"{self.folder}/{data}")
+            self.assertEqual((back.returncode, back.stderr), (0, ""))
+            with Daemon(self.folder / data) as daemon:
+                self.assertEqual([each["id"] for each in daemon.items("/v1/recordings")], [recording])
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["back", "back-with-dot", "data", "slash", "slash-and-dot"])
+
+    def test_what_is_called_as_an_unfinished_backup_and_is_none_stays(self) -> None:
+        with Daemon(self.folder / "data") as daemon:
+            daemon.upload(csv(500))
+        mine = self.folder / "copy.part"
+        mine.mkdir()
+        (mine / "notes.txt").write_text("kept by hand")
+        def back_up() -> tuple[int, str]:
+            made = tool(PROGRAM, "backup", "--data", str(self.folder / "data"), "--to", str(self.folder / "copy"))
+            return made.returncode, made.stderr
+        self.assertEqual(back_up(), (2, f"driftlabd: There is a {mine} that no driftlabd left unfinished; move it away, or name another.\n"))
+        self.assertEqual((mine / "notes.txt").read_text(), "kept by hand")
+        (mine / "notes.txt").rename(mine / "driftlab.db")
+        self.assertEqual(back_up(), (0, ""), "one that was broken off is replaced")
+        self.assertEqual(tool(PROGRAM, "check", "--data", str(self.folder / "copy")).returncode, 0)
+        data = self.folder / "again"
+        (self.folder / "again.part").write_text("a file")
+        refused = tool(PROGRAM, "restore", "--from", str(self.folder / "copy"), "--data", str(data))
+        self.assertEqual((refused.returncode, data.exists(), (self.folder / "again.part").read_text()), (2, False, "a file"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -230,18 +230,50 @@ Status require_absent(const fs::path& target, bool may_be_empty) {
               {{"path", target.string()}});
 }
 
+/// The directory as its parent names it: `X/`, `X/.` and `.` have no name that could be lengthened.
+fs::path by_name(const fs::path& directory) {
+  std::error_code unknown;
+  fs::path named = fs::weakly_canonical(directory, unknown);
+  if (unknown) {
+    named = fs::absolute(directory, unknown).lexically_normal();
+  }
+  return named.has_filename() ? named : named.parent_path();
+}
+
+/// Whether a directory has nothing but what a backup or a data directory under construction has.
+bool is_ours(const fs::path& part) {
+  std::error_code error;
+  const fs::file_status found = fs::symlink_status(part, error);
+  bool ours = fs::is_directory(found);
+  fs::directory_iterator entry(part, error);
+  for (; ours && !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    ours = name.starts_with(kDatabase) || name == kManifest || name == "blobs" || name == "columns";
+  }
+  return ours && !error;
+}
+
 /// A directory under construction, removed unless it was given its name.
 class Construction {
  public:
-  explicit Construction(fs::path target) : target_(std::move(target)), part_(target_) { part_ += ".part"; }
+  explicit Construction(const fs::path& target) : target_(by_name(target)), part_(target_) { part_ += ".part"; }
   Construction(const Construction&) = delete;
   Construction& operator=(const Construction&) = delete;
   ~Construction() {
     std::error_code ignored;
-    fs::remove_all(part_, ignored);
+    if (begun_) {
+      fs::remove_all(part_, ignored);
+    }
   }
-  [[nodiscard]] Status begin() const {
+  /// In the place of one that was broken off. Conflict: something else has its name.
+  [[nodiscard]] Status begin() {
     std::error_code ignored;
+    if (is_there(part_) && !is_ours(part_)) {
+      return fail(ErrorCode::Conflict,
+                  "There is a " + part_.string() + " that no driftlabd left unfinished; move it away, or name another.",
+                  {{"path", part_.string()}});
+    }
+    begun_ = true;
     fs::remove_all(part_, ignored);
     return make_directories(part_);
   }
@@ -255,6 +287,7 @@ class Construction {
  private:
   fs::path target_;
   fs::path part_;
+  bool begun_ = false;
 };
 
 /// Checks the database that was copied to `part` and copies every blob that it names from the folder `from`.
@@ -309,7 +342,7 @@ Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const 
   if (!connection) {
     return fail(connection.error());
   }
-  const Construction construction(target);
+  Construction construction(target);
   Status done = construction.begin();
   if (done) {
     done = copy_database(**connection, construction.part() / kDatabase);
@@ -362,7 +395,7 @@ Result<StoreReport> restore(const fs::path& backup, const fs::path& data) {
     return fail(ErrorCode::Io, "The database of the backup is not the one that its manifest names.",
                 {{"parameter", "from"}});
   }
-  const Construction construction(data);
+  Construction construction(data);
   Status done = construction.begin();
   if (done) {
     done = copy_one(backup / kDatabase, construction.part() / kDatabase);

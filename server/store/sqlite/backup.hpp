@@ -9,7 +9,8 @@
 ///   <target>/columns/...      decoded columns with their checksums
 ///   <target>/manifest.json    {"driftlab", "made_at", "database_sha256", "blobs", "bytes", "faults"}: written last
 ///
-/// and appears under its name complete or not at all.
+/// and appears under its name complete or not at all: until then it is `<target>.part`. One that was broken off is
+/// replaced; what is called so and has anything else in it is somebody's, and stays (Conflict).
 #include "core/signal/result.hpp"
 #include "server/store/store_report.hpp"
 
