@@ -13,7 +13,7 @@ namespace driftlab::server {
 
 enum class FileState {
   Sound,
-  Unknown,  ///< no checksum was ever written for it (of an earlier release)
+  Unknown,  ///< it has no checksum: that was lost, or never written (by an earlier release)
   Damaged,
   Missing,
 };

@@ -238,6 +238,27 @@ class Stored(unittest.TestCase):
         self.assertIn("2 faults", checked.stdout)
         self.assertEqual(tool(PROGRAM, "check", "--data", str(self.folder / "nothing")).returncode, 1)
 
+    def test_columns_without_their_checksum_are_not_called_sound(self) -> None:
+        """Whatever became of them: nobody can say that they are what was written. The daemon makes them anew."""
+        with Daemon(self.folder / "data") as daemon:
+            recording = daemon.upload(csv(3000)).json
+            self.assertEqual(daemon.terminate(), 0)
+        sha = recording["file"]["sha256"]
+        columns = self.folder / "data/columns" / sha[:2] / f"{sha}.columns"
+        sound = columns.read_bytes()
+        flip(columns)
+        columns.with_name(f"{columns.name}.sha256").unlink()
+        told = f"driftlabd: The columns of {sha} cannot be verified, for they have no checksum; a daemon makes them anew from the bytes.\n"
+        for words in (("check",), ("backup", "--to", str(self.folder / "copy"))):
+            found = tool(PROGRAM, *words, "--data", str(self.folder / "data"))
+            self.assertEqual((found.returncode, found.stderr), (1, told), words)
+            self.assertIn("1 faults", found.stdout)
+        with Daemon(self.folder / "data") as daemon:
+            self.assertEqual(daemon.finished(daemon.characterise(recording["id"]).json["id"])["state"], "succeeded")
+            self.assertEqual(daemon.terminate(), 0)
+        self.assertEqual(columns.read_bytes(), sound)
+        self.assertEqual(tool(PROGRAM, "check", "--data", str(self.folder / "data")).returncode, 0)
+
 
 if __name__ == "__main__":
     unittest.main()

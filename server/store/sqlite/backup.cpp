@@ -125,8 +125,10 @@ Status check_rows(SqliteConnection& connection, const std::stop_token& stop, Sto
 std::string fault_of(const std::string& what, const std::string& sha256, FileState state) {
   switch (state) {
     case FileState::Sound:
-    case FileState::Unknown:
       return "";
+    case FileState::Unknown:
+      return "The " + what + " of " + sha256 +
+             " cannot be verified, for they have no checksum; a daemon makes them anew from the bytes.";
     case FileState::Damaged:
       return "The " + what + " of " + sha256 + " are damaged.";
     case FileState::Missing:
