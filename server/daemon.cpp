@@ -179,6 +179,12 @@ struct Daemon::Parts {
     options.maintenance.budgets = budgets;
     options.maintenance.is_mine = [this] { return has_duty(Duty::Maintenance); };
     options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
+    options.maintenance.expired = [this](const StoredRecording& gone) {
+      log_info("recording expired",
+               Json{{"recording", gone.id}, {"device", gone.device_id}, {"created_at", rfc3339(gone.created_at)}});
+      events.add("recordings", "recording.deleted", Json{{"recording", gone.id}, {"device", gone.device_id}});
+      workers.wake();  // what its results took part in is pooled anew
+    };
     options.maintenance.each_turn = [this] {
       look_after_reserve();
       look_after_uploads();

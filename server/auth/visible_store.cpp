@@ -112,6 +112,7 @@ class VisibleStore final : public Store {
     }
     return whole_.revise_recording(changed, expected_revision);
   }
+  Status expire_recording(std::string_view id) override { return whole_.expire_recording(id); }
   Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
     return if_seen(recording(id), [&] { return whole_.remove_recording(id, expected_revision); });
   }

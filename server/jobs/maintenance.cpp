@@ -23,9 +23,23 @@ bool is_due(std::chrono::steady_clock::time_point& done_at, std::int64_t micros)
   return true;
 }
 
+/// False: it stays.
+Result<bool> expire(Store& store, const MaintenanceOptions& options, const StoredRecording& recording) {
+  const Status gone = store.expire_recording(recording.id);
+  if (!gone) {
+    return gone.error().code == ErrorCode::Conflict ? Result<bool>(false) : fail(gone.error());
+  }
+  if (options.expired) {
+    options.expired(recording);
+  }
+  (void)store.remove_unused_blob(recording.blob_sha256);
+  return true;
+}
+
 }  // namespace
 
-Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now) {
+Result<int> forget_old(Store& store, const MaintenanceOptions& options, UtcMicros now) {
+  const Budgets& budgets = options.budgets;
   int removed = 0;
   if (budgets.keep_jobs_days > 0) {
     const auto jobs = store.forget_ended_jobs(now - budgets.keep_jobs_days * kDayMicros);
@@ -45,13 +59,12 @@ Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now) {
         return removed;
       }
       after = recording.id;
-      const Status gone = store.remove_recording(recording.id, recording.revision);
-      if (gone) {
-        (void)store.remove_unused_blob(recording.blob_sha256);
-        ++removed;
-      } else if (gone.error().code != ErrorCode::Conflict) {
+      const Result<bool> gone =
+          expire(store, options, {recording.id, recording.device_id, recording.blob_sha256, recording.created_at});
+      if (!gone) {
         return fail(gone.error());
       }
+      removed += *gone ? 1 : 0;
     }
     if (oldest->empty()) {
       break;
@@ -128,12 +141,12 @@ void Maintenance::turn() {
   }
   const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
   if (full) {
-    (void)forget_old(store_, options_.budgets, clock_.now());
+    (void)forget_old(store_, options_, clock_.now());
     (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
   }
   if (mine && is_due(tidied_at_, options_.tidy_micros)) {
     (void)store_.forget_old_replies();
-    (void)forget_old(store_, options_.budgets, clock_.now());
+    (void)forget_old(store_, options_, clock_.now());
     (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
     if (options_.each_tidy) {
       options_.each_tidy();

@@ -22,13 +22,14 @@ struct MaintenanceOptions {
   /// Whether this process does it, of several on one store; empty: it is the only one.
   std::function<bool()> is_mine = {};
   std::function<bool()> is_nearly_full = {};  ///< then what is older than it may be goes at once, with its files
-  std::function<void()> each_tidy = {};       ///< what else is forgotten, at each removal of old replies
-  std::function<void()> each_turn = {};       ///< what else is looked after, at each look for expired leases
+  std::function<void(const StoredRecording&)> expired = {};  ///< told of each recording that went for its age
+  std::function<void()> each_tidy = {};                      ///< what else is forgotten, at each removal of old replies
+  std::function<void()> each_turn = {};  ///< what else is looked after, at each look for expired leases
 };
 
 /// Removes recordings and ended jobs that are older than the budgets keep_recordings_days and keep_jobs_days say. A
 /// recording that a job is using stays until the next time. How many. Errors: those of the store.
-[[nodiscard]] Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now);
+[[nodiscard]] Result<int> forget_old(Store& store, const MaintenanceOptions& options, UtcMicros now);
 
 /// Blob files older than `age` that no row names, removed. How many. An upload of the same bytes at the same
 /// moment keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.

@@ -80,6 +80,14 @@ struct DeviceUsage {
   bool holds_these_bytes = false;  ///< a recording of the device has the blob that was asked for
 };
 
+/// A recording by what can be told of it whether its row is damaged or not.
+struct StoredRecording {
+  std::string id;
+  std::string device_id;
+  std::string blob_sha256;
+  UtcMicros created_at = 0;
+};
+
 struct DeviceFilter {
   std::optional<std::string> text = {};  ///< part of its name, model, imu, serial or id, in any case
 };
@@ -260,6 +268,9 @@ class Store {
   /// Removes a recording that no job is using and no study or drive names, or a damaged one; its results go with it,
   /// and what they took part in is pooled anew without them. NotFound; Conflict (revision; running job; what names it).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
+  /// As remove_recording whatever its revision, damaged or not, by the daemon itself, for the recording is as old as it
+  /// may be (`recording.expire` in the audit log). NotFound; Conflict (running job; what names it).
+  [[nodiscard]] virtual Status expire_recording(std::string_view id) = 0;
   /// Hashes of all blob rows, for the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> blob_hashes() = 0;
   /// Removes a blob row that no recording names. True if removed.

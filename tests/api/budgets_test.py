@@ -22,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from daemon import PATIENCE_S, PROGRAM, Answer, Daemon, read_all
+from events_test import stream as listening
 from samples import stamped_csv
 from suite import DaemonTest
 
@@ -497,6 +498,33 @@ class WhatIsOldGoes(unittest.TestCase):
             self.assertEqual({r["id"] for r in daemon.items("/v1/recordings")}, {young["id"], named["id"]})
             self.assertFalse(blob.exists() or columns.exists(), "the space is free")
             self.assertEqual([daemon.get(f"/v1/jobs/{job}").status for job in jobs], [404, 200])
+
+    def aged(self) -> tuple[Path, list[str], str]:
+        """Three recordings of the day before yesterday and one of today."""
+        data = Path(self.enterContext(tempfile.TemporaryDirectory())) / "data"
+        with Daemon(data) as daemon:
+            *old, young = (daemon.upload(stamped_csv(200 + 100 * n), device=f"d{n}").json["id"] for n in range(4))
+            self.assertEqual(daemon.terminate(), 0)
+            for recording in old:
+                daemon.change(f"UPDATE recordings SET created_at = {int((time.time() - 2 * 86400) * 1e6)} WHERE id = ?", recording)
+        return data, old, young
+
+    def test_what_goes_for_its_age_leaves_a_trace(self) -> None:
+        """In the log, in the audit log by `daemon`, and for whoever listens, as when somebody deletes it."""
+        data, old, young = self.aged()
+        with Daemon(data, arguments=("--budget", "keep_recordings_days=1")) as daemon:
+            for n, recording in enumerate(old):
+                line = daemon.logged(event="recording expired", recording=recording)
+                self.assertEqual(line["device"], daemon.get(f"/v1/devices/d{n}").json["id"])
+            rows = [(row["actor"], row["object"]) for row in daemon.items("/v1/audit") if row["action"] == "recording.expire"]
+            self.assertEqual(rows, [("daemon", recording) for recording in old])
+            self.assertTrue(daemon.get("/v1/audit-verification").json["sound"])
+            with listening(daemon) as events:
+                run = str(next(events)[0]).rsplit("-", 1)[0]
+            with listening(daemon, last=f"{run}-0") as events:
+                seen = [next(events) for _ in range(4)]
+            self.assertEqual([told["recording"] for _, kind, told in seen if kind == "recording.deleted"], old)
+            self.assertEqual([recording["id"] for recording in daemon.items("/v1/recordings")], [young])
 
 
 class BudgetsAreStatedOnce(unittest.TestCase):

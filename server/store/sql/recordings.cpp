@@ -160,6 +160,39 @@ tl::unexpected<Error> stale(const Recording& found) {
               {{"revision", std::to_string(found.revision)}});
 }
 
+/// With its results, if no job is using it and, unless it may be, nothing names it.
+Status remove_found(Connection& connection, std::string_view id, bool may_be_named, UtcMicros now) {
+  Statement statement = connection.prepare(kLiveJob);
+  statement.bind(id);
+  const Result<std::vector<std::string>> users = all_rows(statement, read_text);
+  if (!users) {
+    return fail(users.error());
+  }
+  if (!users->empty()) {
+    return fail(ErrorCode::Conflict, "Job " + users->front() + " is using the recording; wait for it or cancel it.",
+                {{"job", users->front()}});
+  }
+  if (Status unnamed = may_be_named ? Status() : require_unnamed_recording(connection, id); !unnamed) {
+    return unnamed;
+  }
+  if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
+    return removed;
+  }
+  const auto axes = axes_of_recording(connection, id);
+  if (!axes) {
+    return fail(axes.error());
+  }
+  for (const std::string_view removal : {kRemove, kRemoveOwners}) {
+    if (Status removed = connection.prepare(removal).bind(id).run(); !removed) {
+      return removed;
+    }
+  }
+  if (Status shown = show_results(connection, *axes); !shown) {
+    return shown;
+  }
+  return refresh_pools(connection, *axes, now).map([](int) {});
+}
+
 }  // namespace
 
 Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256) {
@@ -324,37 +357,13 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
   if (found->revision != expected_revision && expected_revision != Store::kAnyRevision) {
     return stale(*found);
   }
-  Statement statement = connection.prepare(kLiveJob);
-  statement.bind(id);
-  const Result<std::vector<std::string>> users = all_rows(statement, read_text);
-  if (!users) {
-    return fail(users.error());
-  }
-  if (!users->empty()) {
-    return fail(ErrorCode::Conflict, "Job " + users->front() + " is using the recording; wait for it or cancel it.",
-                {{"job", users->front()}});
-  }
   // A damaged one stands in the way of what names it, and comes back by an upload.
-  if (Status unnamed = expected_revision == Store::kAnyRevision ? Status() : require_unnamed_recording(connection, id);
-      !unnamed) {
-    return unnamed;
-  }
-  if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
-    return removed;
-  }
-  const auto axes = axes_of_recording(connection, id);
-  if (!axes) {
-    return fail(axes.error());
-  }
-  for (const std::string_view removal : {kRemove, kRemoveOwners}) {
-    if (Status removed = connection.prepare(removal).bind(id).run(); !removed) {
-      return removed;
-    }
-  }
-  if (Status shown = show_results(connection, *axes); !shown) {
-    return shown;
-  }
-  return refresh_pools(connection, *axes, now).map([](int) {});
+  return remove_found(connection, id, expected_revision == Store::kAnyRevision, now);
+}
+
+Status expire_recording(Connection& connection, std::string_view id, UtcMicros now) {
+  const Result<Recording> found = damaged_or_not(connection, id);
+  return found ? remove_found(connection, id, false, now) : fail(found.error());
 }
 
 Result<std::vector<std::string>> blob_hashes(Connection& connection) {

@@ -176,6 +176,13 @@ Status SqlStore::remove_recording(std::string_view id, std::int64_t expected_rev
                 [&](Connection& c) { return tables::remove_recording(c, id, expected_revision, now(c)); });
 }
 
+Status SqlStore::expire_recording(std::string_view id) {
+  Caller self;
+  self.principal.name = "daemon";
+  const ActingFor acting(self);
+  return remove("recording.expire", id, [&](Connection& c) { return tables::expire_recording(c, id, now(c)); });
+}
+
 Status SqlStore::remove_device(std::string_view id, std::int64_t expected_revision) {
   return remove("device.delete", id, [&](Connection& c) { return tables::remove_device(c, id, expected_revision); });
 }
