@@ -185,6 +185,10 @@ struct Daemon::Parts {
       events.add("recordings", "recording.deleted", Json{{"recording", gone.id}, {"device", gone.device_id}});
       workers.wake();  // what its results took part in is pooled anew
     };
+    options.maintenance.make_room = [this] { return reserve.release(); };
+    options.maintenance.failed = [this](const Error& error) {
+      note_failure(states, error, Json{{"of", "removal of what is old"}});
+    };
     options.maintenance.each_turn = [this] {
       look_after_reserve();
       look_after_uploads();

@@ -112,6 +112,9 @@ class VisibleStore final : public Store {
     }
     return whole_.revise_recording(changed, expected_revision);
   }
+  Result<std::vector<StoredRecording>> stored_recordings(std::string_view after, int most) override {
+    return whole_.stored_recordings(after, most);  // for the daemon itself
+  }
   Status expire_recording(std::string_view id) override { return whole_.expire_recording(id); }
   Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
     return if_seen(recording(id), [&] { return whole_.remove_recording(id, expected_revision); });

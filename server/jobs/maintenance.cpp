@@ -1,5 +1,6 @@
 #include "server/jobs/maintenance.hpp"
 
+#include "server/store/damaged_row.hpp"
 #include "server/store/guarded_round.hpp"
 
 #include <algorithm>
@@ -23,11 +24,23 @@ bool is_due(std::chrono::steady_clock::time_point& done_at, std::int64_t micros)
   return true;
 }
 
+/// A removal, once more where the disk is full and space could be given back: removing writes to the log first.
+template <class Removal>
+auto with_room(const MaintenanceOptions& options, const Removal& removal) {
+  auto removed = removal();
+  if (!removed && removed.error().code == ErrorCode::DiskFull && options.make_room && options.make_room()) {
+    removed = removal();
+  }
+  return removed;
+}
+
 /// False: it stays.
 Result<bool> expire(Store& store, const MaintenanceOptions& options, const StoredRecording& recording) {
-  const Status gone = store.expire_recording(recording.id);
+  const Status gone = with_room(options, [&] { return store.expire_recording(recording.id); });
   if (!gone) {
-    return gone.error().code == ErrorCode::Conflict ? Result<bool>(false) : fail(gone.error());
+    const bool stays = gone.error().code == ErrorCode::Conflict || gone.error().code == ErrorCode::NotFound ||
+                       !damaged_row_of(gone.error()).empty();
+    return stays ? Result<bool>(false) : fail(gone.error());
   }
   if (options.expired) {
     options.expired(recording);
@@ -39,35 +52,36 @@ Result<bool> expire(Store& store, const MaintenanceOptions& options, const Store
 }  // namespace
 
 Result<int> forget_old(Store& store, const MaintenanceOptions& options, UtcMicros now) {
+  constexpr int kAtOnce = 100;
   const Budgets& budgets = options.budgets;
   int removed = 0;
   if (budgets.keep_jobs_days > 0) {
-    const auto jobs = store.forget_ended_jobs(now - budgets.keep_jobs_days * kDayMicros);
+    const auto jobs =
+        with_room(options, [&] { return store.forget_ended_jobs(now - budgets.keep_jobs_days * kDayMicros); });
     if (!jobs) {
       return fail(jobs.error());
     }
     removed += *jobs;
   }
   std::string after;
-  while (budgets.keep_recordings_days > 0) {
-    const auto oldest = store.recordings({}, Page{after, 100});
-    if (!oldest) {
-      return fail(oldest.error());
+  bool any_old = budgets.keep_recordings_days > 0;
+  while (any_old) {
+    const auto some = store.stored_recordings(after, kAtOnce);
+    if (!some) {
+      return fail(some.error());
     }
-    for (const Recording& recording : *oldest) {
-      if (recording.created_at >= now - budgets.keep_recordings_days * kDayMicros) {
-        return removed;
-      }
+    any_old = false;  // ids follow the time; one row with a wrong time ends nothing
+    for (const StoredRecording& recording : *some) {
       after = recording.id;
-      const Result<bool> gone =
-          expire(store, options, {recording.id, recording.device_id, recording.blob_sha256, recording.created_at});
+      if (recording.created_at >= now - budgets.keep_recordings_days * kDayMicros) {
+        continue;
+      }
+      any_old = true;
+      const Result<bool> gone = expire(store, options, recording);
       if (!gone) {
         return fail(gone.error());
       }
       removed += *gone ? 1 : 0;
-    }
-    if (oldest->empty()) {
-      break;
     }
   }
   return removed;
@@ -131,6 +145,15 @@ void Maintenance::run() {
   }
 }
 
+void Maintenance::forget() {
+  const Result<int> removed = forget_old(store_, options_, clock_.now());
+  std::string failure = removed ? std::string() : removed.error().message;
+  if (!removed && failure != told_failure_ && options_.failed) {
+    options_.failed(removed.error());
+  }
+  told_failure_ = std::move(failure);
+}
+
 void Maintenance::turn() {
   const bool mine = !options_.is_mine || options_.is_mine();
   if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
@@ -141,12 +164,12 @@ void Maintenance::turn() {
   }
   const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
   if (full) {
-    (void)forget_old(store_, options_, clock_.now());
+    forget();
     (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
   }
   if (mine && is_due(tidied_at_, options_.tidy_micros)) {
     (void)store_.forget_old_replies();
-    (void)forget_old(store_, options_, clock_.now());
+    forget();
     (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
     if (options_.each_tidy) {
       options_.each_tidy();

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace driftlab::server {
@@ -23,12 +24,15 @@ struct MaintenanceOptions {
   std::function<bool()> is_mine = {};
   std::function<bool()> is_nearly_full = {};  ///< then what is older than it may be goes at once, with its files
   std::function<void(const StoredRecording&)> expired = {};  ///< told of each recording that went for its age
-  std::function<void()> each_tidy = {};                      ///< what else is forgotten, at each removal of old replies
-  std::function<void()> each_turn = {};  ///< what else is looked after, at each look for expired leases
+  std::function<bool()> make_room = {};           ///< gives space back, so that a full disk can be written; false: none
+  std::function<void(const Error&)> failed = {};  ///< told why old rows could not be removed, once for each sentence
+  std::function<void()> each_tidy = {};           ///< what else is forgotten, at each removal of old replies
+  std::function<void()> each_turn = {};           ///< what else is looked after, at each look for expired leases
 };
 
-/// Removes recordings and ended jobs that are older than the budgets keep_recordings_days and keep_jobs_days say. A
-/// recording that a job is using stays until the next time. How many. Errors: those of the store.
+/// Removes recordings and ended jobs that are older than the budgets keep_recordings_days and keep_jobs_days say,
+/// also those whose rows are damaged. A recording that a job is using stays until the next time, and one whose removal
+/// meets a damaged row, which the store tells. How many. Errors: those of the store.
 [[nodiscard]] Result<int> forget_old(Store& store, const MaintenanceOptions& options, UtcMicros now);
 
 /// Blob files older than `age` that no row names, removed. How many. An upload of the same bytes at the same
@@ -53,6 +57,7 @@ class Maintenance {
   void run();
   /// One look for expired leases, and what else is due.
   void turn();
+  void forget();
 
   Store& store_;
   BlobStore& blobs_;
@@ -64,6 +69,7 @@ class Maintenance {
   bool stopping_ = false;
   std::chrono::steady_clock::time_point settled_at_;
   std::chrono::steady_clock::time_point tidied_at_;
+  std::string told_failure_;  ///< of the last removal of old rows; empty: it was done
   std::thread thread_;
 };
 

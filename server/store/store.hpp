@@ -268,6 +268,8 @@ class Store {
   /// Removes a recording that no job is using and no study or drive names, or a damaged one; its results go with it,
   /// and what they took part in is pooled anew without them. NotFound; Conflict (revision; running job; what names it).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
+  /// Those behind the id `after`, by id, damaged ones too: no seal is looked at. At most so many.
+  [[nodiscard]] virtual Result<std::vector<StoredRecording>> stored_recordings(std::string_view after, int most) = 0;
   /// As remove_recording whatever its revision, damaged or not, by the daemon itself, for the recording is as old as it
   /// may be (`recording.expire` in the audit log). NotFound; Conflict (running job; what names it).
   [[nodiscard]] virtual Status expire_recording(std::string_view id) = 0;

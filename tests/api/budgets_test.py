@@ -509,6 +509,12 @@ class WhatIsOldGoes(unittest.TestCase):
                 daemon.change(f"UPDATE recordings SET created_at = {int((time.time() - 2 * 86400) * 1e6)} WHERE id = ?", recording)
         return data, old, young
 
+    def await_recordings(self, daemon: Daemon, expected: set[str]) -> None:
+        until = time.monotonic() + 30
+        while (answer := daemon.get("/v1/recordings")).status != 200 or {recording["id"] for recording in answer.json["items"]} != expected:
+            self.assertLess(time.monotonic(), until, answer.describe())
+            time.sleep(0.1)
+
     def test_what_goes_for_its_age_leaves_a_trace(self) -> None:
         """In the log, in the audit log by `daemon`, and for whoever listens, as when somebody deletes it."""
         data, old, young = self.aged()
@@ -525,6 +531,23 @@ class WhatIsOldGoes(unittest.TestCase):
                 seen = [next(events) for _ in range(4)]
             self.assertEqual([told["recording"] for _, kind, told in seen if kind == "recording.deleted"], old)
             self.assertEqual([recording["id"] for recording in daemon.items("/v1/recordings")], [young])
+
+    def test_a_damaged_row_does_not_stop_it(self) -> None:
+        data, old, young = self.aged()
+        with Daemon(data) as daemon:
+            self.assertEqual(daemon.terminate(), 0)
+            daemon.change("UPDATE recordings SET condition = 'another' WHERE id = ?", old[0])
+        with Daemon(data, arguments=("--budget", "keep_recordings_days=1")) as daemon:
+            self.await_recordings(daemon, {young})
+
+    def test_a_row_of_another_time_does_not_stop_it(self) -> None:
+        """Times have no checksum: the oldest says that it is of tomorrow."""
+        data, old, young = self.aged()
+        with Daemon(data) as daemon:
+            self.assertEqual(daemon.terminate(), 0)
+            daemon.change(f"UPDATE recordings SET created_at = {int((time.time() + 86400) * 1e6)} WHERE id = ?", old[0])
+        with Daemon(data, arguments=("--budget", "keep_recordings_days=1")) as daemon:
+            self.await_recordings(daemon, {old[0], young})
 
 
 class BudgetsAreStatedOnce(unittest.TestCase):

@@ -21,6 +21,8 @@ constexpr std::string_view kRemoveUnusedBlob =
   "recording_id = recordings.id), ''), seal"
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id = ?";
+constexpr std::string_view kStored =
+    "SELECT id, device_id, blob_sha256, created_at FROM recordings WHERE id > ? ORDER BY id LIMIT ?";
 constexpr std::string_view kByIds =
     "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id IN (SELECT value FROM json_each(?))";
 constexpr std::string_view kByDeviceAndBlob =
@@ -109,6 +111,8 @@ Recording read_recording(const Statement& row) {
 Result<Recording> read_sound_recording(const Statement& row) {
   return sound_row("recordings", row.text(0), read_recording(row), row.text(14));
 }
+
+StoredRecording read_stored(const Statement& row) { return {row.text(0), row.text(1), row.text(2), row.integer(3)}; }
 
 std::string read_text(const Statement& row) { return row.text(0); }
 
@@ -359,6 +363,12 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
   }
   // A damaged one stands in the way of what names it, and comes back by an upload.
   return remove_found(connection, id, expected_revision == Store::kAnyRevision, now);
+}
+
+Result<std::vector<StoredRecording>> stored_recordings(Connection& connection, std::string_view after, int most) {
+  Statement statement = connection.prepare(kStored);
+  statement.bind(after, most);
+  return all_rows(statement, read_stored);
 }
 
 Status expire_recording(Connection& connection, std::string_view id, UtcMicros now) {

@@ -176,6 +176,10 @@ Status SqlStore::remove_recording(std::string_view id, std::int64_t expected_rev
                 [&](Connection& c) { return tables::remove_recording(c, id, expected_revision, now(c)); });
 }
 
+Result<std::vector<StoredRecording>> SqlStore::stored_recordings(std::string_view after, int most) {
+  return database_->read([&](Connection& c) { return tables::stored_recordings(c, after, most); });
+}
+
 Status SqlStore::expire_recording(std::string_view id) {
   Caller self;
   self.principal.name = "daemon";

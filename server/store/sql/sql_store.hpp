@@ -82,6 +82,7 @@ class SqlStore : public Store {
                                                   const std::optional<Visibility>& visible) override;
   [[nodiscard]] Result<Recording> revise_recording(const Recording& recording, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override;
+  [[nodiscard]] Result<std::vector<StoredRecording>> stored_recordings(std::string_view after, int most) override;
   [[nodiscard]] Status expire_recording(std::string_view id) override;
   [[nodiscard]] Status remove_device(std::string_view id, std::int64_t expected_revision) override;
   [[nodiscard]] Status remove_study(std::string_view id) override;

@@ -52,6 +52,8 @@ namespace driftlab::server::tables {
                                                  std::int64_t expected_revision, UtcMicros now);
 [[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,
                                       UtcMicros now);
+[[nodiscard]] Result<std::vector<StoredRecording>> stored_recordings(Connection& connection, std::string_view after,
+                                                                     int most);
 [[nodiscard]] Status expire_recording(Connection& connection, std::string_view id, UtcMicros now);
 [[nodiscard]] Result<std::vector<std::string>> blob_hashes(Connection& connection);
 [[nodiscard]] Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256);
