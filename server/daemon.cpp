@@ -212,8 +212,10 @@ struct Daemon::Parts {
     };
     options.describe = manifest_of;
     options.ended = [this](const Backup& backup) {
-      const Json facts{
-          {"backup", backup.name}, {"recordings", backup.blobs}, {"bytes", backup.bytes}, {"faults", backup.faults}};
+      const Json facts{{"backup", backup.name},
+                       {"recordings", backup.blobs},
+                       {"bytes", backup.bytes},
+                       {"faults", backup.failure ? Json{backup.failure->message} : Json(backup.faults)}};
       const std::string state(name_of(backup.state));
       if (backup.state == BackupState::Complete) {
         log_info("backup complete", facts);

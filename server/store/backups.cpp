@@ -2,6 +2,7 @@
 
 #include "server/store/files.hpp"
 #include "server/store/guarded_round.hpp"
+#include "server/store/told_error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -219,7 +220,12 @@ void Backups::make(const std::stop_token& stop) {
     Backup& own = *std::find_if(own_.begin(), own_.end(), [&](const Backup& each) { return each.name == name; });
     own.finished_at = clock_.now();
     own.state = !report ? BackupState::Failed : report->faults.empty() ? BackupState::Complete : BackupState::Damaged;
-    own.faults = report ? report->faults : std::vector<std::string>{report.error().message};
+    if (report) {
+      own.faults = report->faults;
+    } else {
+      own.failure = report.error();
+      own.faults = {without_paths({ErrorCode::Io, own.failure->message, own.failure->fields}).message};
+    }
     own.blobs = report ? report->blobs : 0;
     own.bytes = report ? report->bytes : 0;
     ended = own;

@@ -43,8 +43,9 @@ struct Backup {
   UtcMicros begun_at = 0;
   std::optional<UtcMicros> finished_at;
   std::int64_t blobs = 0;
-  std::int64_t bytes = 0;           ///< of recordings and their columns
-  std::vector<std::string> faults;  ///< sentences: what is damaged, or why the backup failed
+  std::int64_t bytes = 0;             ///< of recordings and their columns
+  std::vector<std::string> faults;    ///< sentences: what is damaged, or why it failed; without paths of files
+  std::optional<Error> failure = {};  ///< why it failed, with them: for the log
 };
 
 struct BackupOptions {

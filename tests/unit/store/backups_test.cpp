@@ -205,6 +205,17 @@ TEST_F(MadeBackups, OneThatFailsSaysWhyAndTheTimerWaits) {
   EXPECT_THAT(folders(), IsEmpty());
 }
 
+TEST_F(MadeBackups, WhyOneFailedIsToldWithoutPathsAndToTheLogWithThem) {
+  report_ = fail(ErrorCode::NotFound, "There is no database in /srv/lab.", {{"path", "/srv/lab"}});
+  Backups backups(clock_, options());
+  backups.start();
+  ASSERT_TRUE(backups.begin());
+  const Backup failed = ended(1).front();
+  EXPECT_THAT(failed.faults, ElementsAre("There is no database in [a file that the log names]."));
+  ASSERT_TRUE(failed.failure);
+  EXPECT_EQ(failed.failure->message, "There is no database in /srv/lab.");
+}
+
 TEST_F(MadeBackups, StoppingGivesUpTheOneThatIsMade) {
   std::latch begun(1);
   BackupOptions slow = options();
