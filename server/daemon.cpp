@@ -61,6 +61,7 @@ struct Daemon::Parts {
         std::unique_ptr<Gate> gate_in, WorkerOptions worker_options, const DestinationGuard& webhook_guard,
         const Settings& settings)
       : budgets(settings.budgets),
+        backup_period_seconds(3600.0 * settings.backup_hours),
         reserve(settings.data / "reserve", settings.budgets.reserve_bytes),
         machine_clock(std::move(machine)),
         clock(*store_in.clock),
@@ -224,8 +225,21 @@ struct Daemon::Parts {
       }
       (void)store->access().note_state("backup." + state, backup.name,
                                        backup.faults.empty() ? "" : backup.faults.front());
+      note_backup(backup);
     };
     return options;
+  }
+
+  /// A backup that failed leaves the daemon ready: it is shown, and work goes on.
+  void note_backup(const Backup& backup) {
+    if (backup.state == BackupState::Complete) {
+      states.end(BadState::BackupsFail);
+    } else if (backup.state == BackupState::Damaged) {
+      states.begin(BadState::BackupsFail, "damage", "The last backup found damage: " + backup.faults.front());
+    } else if (backup.failure && backup.failure->code != ErrorCode::Cancelled) {
+      states.begin(BadState::BackupsFail, cause_of(*backup.failure),
+                   "The last backup failed: " + backup.failure->message);
+    }
   }
 
   DelivererOptions delivery_options(const DestinationGuard& guard) {
@@ -264,9 +278,10 @@ struct Daemon::Parts {
     add_store_gauges(found, *store, clock);
     add_disk_gauges(found, *blobs);
     add_state_gauges(found, states);
-    if (const auto newest = backups.newest()) {
-      found.backup_age_seconds = static_cast<double>(std::max<UtcMicros>(0, clock.now() - *newest)) / 1e6;
+    if (const auto begun_at = backups.none_since()) {
+      found.backup_age_seconds = static_cast<double>(std::max<UtcMicros>(0, clock.now() - *begun_at)) / 1e6;
     }
+    found.backup_period_seconds = backup_period_seconds;
     const Scrubber::Findings stored = scrubber.findings();
     found.blobs_damaged = static_cast<double>(stored.damaged);
     found.blobs_healed = static_cast<double>(stored.healed);
@@ -314,6 +329,7 @@ struct Daemon::Parts {
   std::atomic<bool> stopping{false};
   std::optional<std::chrono::steady_clock::time_point> uploads_looked_at;
   const Budgets budgets;
+  const double backup_period_seconds;
   std::stop_source stop_uploads;
   Metrics metrics;
   UtcMicros started_at = SystemClock().now();

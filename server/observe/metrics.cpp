@@ -176,8 +176,10 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
   single(text, "driftlab_store_log_pages", "gauge", "Pages of the database's write-ahead log.", gauges.log_pages);
   single(text, "driftlab_blob_bytes", "gauge", "Bytes of all recordings as they were uploaded.", gauges.blob_bytes);
   if (gauges.backup_age_seconds) {
-    single(text, "driftlab_backup_age_seconds", "gauge", "Since the newest complete backup began.",
-           *gauges.backup_age_seconds);
+    single(text, "driftlab_backup_age_seconds", "gauge",
+           "Since the newest complete backup began; without one, since the daemon did.", *gauges.backup_age_seconds);
+    single(text, "driftlab_backup_period_seconds", "gauge", "Between two backups by the timer; 0: only when asked.",
+           gauges.backup_period_seconds);
   }
   single(text, "driftlab_blobs_damaged", "gauge", "Stored files that are damaged and could not be healed.",
          gauges.blobs_damaged);

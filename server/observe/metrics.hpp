@@ -50,7 +50,9 @@ struct Gauges {
     double count = 0.0;
   };
   std::vector<State> bad_states;
-  std::optional<double> backup_age_seconds;  ///< of the newest complete one; nothing: there is none, or none are made
+  /// Of the newest complete one; where there is none, since the daemon began. Nothing: none are made.
+  std::optional<double> backup_age_seconds;
+  double backup_period_seconds = 0.0;  ///< of the timer; 0: only when asked
   double blobs_damaged = 0.0;
   double blobs_healed = 0.0;       ///< a counter kept elsewhere
   double scrubbed_bytes = 0.0;     ///< a counter kept elsewhere

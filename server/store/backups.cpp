@@ -4,6 +4,8 @@
 #include "server/store/guarded_round.hpp"
 #include "server/store/told_error.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -45,6 +47,12 @@ std::optional<UtcMicros> time_of(const std::string& name) {
   return name_at(time) == name ? std::optional(time) : std::nullopt;
 }
 
+/// Of the disk that a directory is on; nothing: it is not there.
+std::optional<std::uint64_t> device_of(const fs::path& directory) {
+  struct ::stat found{};
+  return ::stat(directory.c_str(), &found) == 0 ? std::optional<std::uint64_t>(found.st_dev) : std::nullopt;
+}
+
 /// Whether there was a folder of it at its end.
 bool is_made(const Backup& backup) {
   return backup.state == BackupState::Complete || backup.state == BackupState::Damaged;
@@ -68,7 +76,8 @@ std::string_view name_of(BackupState state) {
 
 bool is_backup_name(std::string_view text) { return time_of(std::string(text)).has_value(); }
 
-Backups::Backups(const Clock& clock, BackupOptions options) : clock_(clock), options_(std::move(options)) {}
+Backups::Backups(const Clock& clock, BackupOptions options)
+    : clock_(clock), options_(std::move(options)), began_(clock.now()) {}
 
 void Backups::start() {
   if (!options_.directory.empty()) {
@@ -100,10 +109,19 @@ Result<std::vector<Backup>> Backups::complete() const {
       found.push_back({name, state, *time, std::nullopt, told.blobs, told.bytes, std::move(told.faults)});
     }
   }
-  if (error && error != std::errc::no_such_file_or_directory && !options_.directory.empty()) {
+  const bool absent = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  if (error && !absent && !options_.directory.empty()) {
     return fail(file_error(error.value(), "list", options_.directory));
   }
   std::sort(found.begin(), found.end(), [](const Backup& a, const Backup& b) { return a.name < b.name; });
+  if (!found.empty()) {
+    Seen seen{found.back().begun_at, std::nullopt, device_of(options_.directory).value_or(0)};
+    for (const Backup& each : found) {
+      seen.newest_sound = each.state == BackupState::Complete ? each.begun_at : seen.newest_sound;
+    }
+    const std::lock_guard<std::mutex> guard(mutex_);
+    seen_ = seen;
+  }
   return found;
 }
 
@@ -159,6 +177,32 @@ std::optional<UtcMicros> Backups::newest() const {
   return time;
 }
 
+std::optional<UtcMicros> Backups::none_since() const {
+  if (options_.directory.empty()) {
+    return std::nullopt;
+  }
+  (void)complete();
+  const std::lock_guard<std::mutex> guard(mutex_);
+  return seen_ ? seen_->newest_sound.value_or(began_) : began_;
+}
+
+Status Backups::require_its_disk() const {
+  const auto found = complete();
+  if (!found) {
+    return fail(found.error());
+  }
+  const std::optional<std::uint64_t> device = device_of(options_.directory);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (!found->empty() || !seen_ || device == seen_->device) {
+    return {};
+  }
+  return fail(ErrorCode::Io,
+              "The directory " + options_.directory.string() +
+                  " is gone, or on another disk than the backups that were in it. Mount that one; where the backups "
+                  "are to go elsewhere, start the daemon again.",
+              {{"path", options_.directory.string()}});
+}
+
 bool Backups::is_due() const {
   if (options_.every_micros <= 0) {
     return false;
@@ -170,6 +214,9 @@ bool Backups::is_due() const {
     const std::int64_t pause = std::min(options_.every_micros, kPauseMicros);
     if (!own_.empty() && own_.back().state == BackupState::Failed && now - own_.back().begun_at < pause) {
       return false;
+    }
+    if (seen_ && now - seen_->newest < options_.every_micros) {
+      return false;  // it may be out of sight
     }
     std::copy_if(own_.begin(), own_.end(), std::back_inserter(made), [](const Backup& own) { return is_made(own); });
   }
@@ -207,7 +254,10 @@ void Backups::make(const std::stop_token& stop) {
   }
   Result<StoreReport> report = fail(ErrorCode::Internal, "The backup broke off by an exception, which the log has.");
   (void)guarded_round("backups", [&] {
-    const Status ready = make_directories(options_.directory);
+    Status ready = require_its_disk();
+    if (ready) {
+      ready = make_directories(options_.directory);
+    }
     report = ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
   });
   if (report) {

@@ -87,8 +87,22 @@ class Backups {
   /// When the newest undamaged backup was begun; nothing if there is none or the daemon has no directory for backups.
   [[nodiscard]] std::optional<UtcMicros> newest() const;
 
+  /// Since when there is no newer undamaged one: when the newest was begun, also where its folder is gone from a
+  /// directory that is empty now (its disk is not mounted); where this process has seen none, when it began. Nothing:
+  /// the daemon has no directory for backups.
+  [[nodiscard]] std::optional<UtcMicros> none_since() const;
+
  private:
+  /// The backups that were in the directory when some were last seen there.
+  struct Seen {
+    UtcMicros newest = 0;
+    std::optional<UtcMicros> newest_sound;
+    std::uint64_t device = 0;  ///< of the directory
+  };
+
   [[nodiscard]] Result<std::vector<Backup>> complete() const;
+  /// Io: the directory, or its disk, is not the one on which backups were seen, and has none of them.
+  [[nodiscard]] Status require_its_disk() const;
   void run(const std::stop_token& stop);
   /// Makes the backup that is under way.
   void make(const std::stop_token& stop);
@@ -100,9 +114,11 @@ class Backups {
 
   const Clock& clock_;
   const BackupOptions options_;
+  const UtcMicros began_;
   mutable std::mutex mutex_;
   std::condition_variable_any asked_;
   std::vector<Backup> own_;  ///< of this process, oldest first; at most kOwn
+  mutable std::optional<Seen> seen_;
   bool wanted_ = false;
   bool stopped_ = false;
   std::jthread thread_;

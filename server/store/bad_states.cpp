@@ -13,16 +13,16 @@ constexpr std::size_t kMostDue = 1000;  // rows that wait for a store that canno
 }  // namespace
 
 std::string_view name_of(BadState state) {
-  constexpr std::array<std::string_view, 8> kNames{"store_silent",     "store_unwritable", "blobs_silent",
+  constexpr std::array<std::string_view, 9> kNames{"store_silent",     "store_unwritable", "blobs_silent",
                                                    "disk_nearly_full", "files_fail",       "file_damaged",
-                                                   "row_damaged",      "writes_lost"};
+                                                   "row_damaged",      "backups_fail",     "writes_lost"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
 const std::vector<BadState>& all_bad_states() {
   static const std::vector<BadState> all{BadState::StoreSilent,    BadState::StoreUnwritable, BadState::BlobsSilent,
                                          BadState::DiskNearlyFull, BadState::FilesFail,       BadState::FileDamaged,
-                                         BadState::RowDamaged,     BadState::WritesLost};
+                                         BadState::RowDamaged,     BadState::BackupsFail,     BadState::WritesLost};
   return all;
 }
 

@@ -24,6 +24,7 @@ enum class BadState {
   FilesFail,        ///< an answer or a job met an error of the disk in the last minutes
   FileDamaged,      ///< a stored file is not what was written
   RowDamaged,       ///< a row of the database is not
+  BackupsFail,      ///< the last backup failed, or found damage
   WritesLost,       ///< the database is older than what was acknowledged, as this process found it
 };
 

@@ -88,6 +88,37 @@ class Backups(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertFalse((self.folder / "third").exists())
 
+    def test_a_backup_that_fails_is_shown_and_the_daemon_stays_ready(self) -> None:
+        """Where the directory cannot be made: the age counts from the start, the state says why, and no answer says where."""
+        disk = self.folder / "disk"
+        disk.write_text("no directory")
+        with Daemon(self.folder / "data", arguments=("--backups", str(disk / "backups"), "--backup-hours", "6")) as daemon:
+            begun = daemon.logged(event="bad state", state="backups_fail", cause="io")
+            self.assertIn(f"The last backup failed: Could not use {disk}", begun["detail"])
+            ready = daemon.get("/readyz")
+            self.assertEqual(ready.status, 200, ready.text)
+            self.assertEqual([(state["state"], state["cause"]) for state in ready.json["states"]], [("backups_fail", "io")])
+            metrics = daemon.get("/metrics").text
+            self.assertRegex(metrics, r"(?m)^driftlab_backup_age_seconds \d")
+            self.assertIn("driftlab_backup_period_seconds 21600\n", metrics)
+            self.assertIn('driftlab_bad_states{state="backups_fail",cause="io"} 1\n', metrics)
+            self.assertIn("driftlab_ready 1\n", metrics)
+            self.assertEqual(len(daemon.items("/v1/backups")), 1, "the timer waits")
+            until = time.monotonic() + PATIENCE_S
+            def told() -> list[dict[str, Any]]:
+                return [row for row in daemon.items("/v1/audit") if row["action"] in ("backup.failed", "state.begin")]
+            while len(told()) < 2 and time.monotonic() < until:
+                time.sleep(0.1)
+            self.assertEqual(sorted(row["action"] for row in told()), ["backup.failed", "state.begin"])
+            for text in (ready.text, daemon.get("/v1/backups").text, str(told())):
+                self.assertIn("Could not use", text)
+                self.assertNotIn(str(self.folder), text)
+            disk.unlink()
+            name = daemon.post("/v1/backups").json["name"]
+            daemon.logged(event="backup complete", backup=name)
+            daemon.logged(event="bad state ended", state="backups_fail")
+            self.assertEqual(daemon.get("/readyz").json, {"status": "ready"})
+
     def test_a_directory_may_be_named_with_a_slash_behind_it(self) -> None:
         with Daemon(self.folder / "data") as daemon:
             recording = daemon.upload(csv(500)).json["id"]

@@ -146,6 +146,28 @@ class WithPrometheus(unittest.TestCase):
                 server.terminate()
                 server.wait(PATIENCE_S)
 
+    def test_the_alert_of_old_backups_goes_by_the_time_of_the_timer(self) -> None:
+        """After twice that time, whatever it is; never where backups are made only when asked."""
+        rules = SOURCE / "deploy/prometheus/driftlab.rules.yml"
+        def series(name: str, instance: str, values: str) -> dict[str, str]:
+            return {"series": f'{name}{{job="driftlab",instance="{instance}"}}', "values": values}
+        def alerts(hours: int, *expected: str) -> dict[str, object]:
+            days = f"{hours // 24}d " if hours >= 24 else ""
+            told = f"driftlab on {{}} has had no sound backup for {days}{hours % 24}h 0m 0s; /readyz and the log say why."
+            return {"eval_time": f"{hours}h", "alertname": "DriftlabBackupOld",
+                    "exp_alerts": [{"exp_labels": {"severity": "warn", "job": "driftlab", "instance": each},
+                                    "exp_annotations": {"summary": told.format(each)}} for each in expected]}
+        periods = {"often": 6, "daily": 24, "asked": 0}
+        given = [series("driftlab_backup_age_seconds", each, "0+3600x80") for each in periods]
+        given += [series("driftlab_backup_period_seconds", each, f"{3600 * hours}x80") for each, hours in periods.items()]
+        told = [alerts(12), alerts(13, "often"), alerts(48, "often"), alerts(49, "often", "daily")]
+        document = {"rule_files": [str(rules)], "evaluation_interval": "1h",
+                    "tests": [{"interval": "1h", "input_series": given, "alert_rule_test": told}]}
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "test.yml").write_text(json.dumps(document))  # JSON is YAML
+            tested = tool("promtool", "test", "rules", f"{folder}/test.yml")
+        self.assertEqual(tested.returncode, 0, tested.stdout + tested.stderr)
+
 
 class OffersForOperators(unittest.TestCase):
     @unittest.skipUnless(shutil.which("systemd-analyze"), "SKIPPED: systemd-analyze is not here")

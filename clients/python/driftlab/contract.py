@@ -3188,7 +3188,7 @@ class ReadinessAnswer(TypedDict):
 
 class ReadinessAnswerState(TypedDict):
     state: Literal['store_silent', 'store_unwritable', 'blobs_silent', 'disk_nearly_full', 'files_fail', 'file_damaged',
-                   'row_damaged', 'writes_lost']
+                   'row_damaged', 'backups_fail', 'writes_lost']
     cause: Literal['io', 'disk_full', 'damage']
     since: str
     detail: str

@@ -216,6 +216,52 @@ TEST_F(MadeBackups, WhyOneFailedIsToldWithoutPathsAndToTheLogWithThem) {
   EXPECT_EQ(failed.failure->message, "There is no database in /srv/lab.");
 }
 
+TEST_F(MadeBackups, TheTimeWithoutOneBeginsWithTheDaemonWhereThereIsNone) {
+  const UtcMicros began = clock_.now();
+  Backups backups(clock_, options());
+  EXPECT_EQ(Backups(clock_, {}).none_since(), std::nullopt) << "none are made";
+  clock_.advance(kHour);
+  EXPECT_EQ(backups.none_since(), began);
+  report_ = fail(ErrorCode::DiskFull, "The disk is full.");
+  backups.start();
+  ASSERT_TRUE(backups.begin());
+  (void)ended(1);
+  EXPECT_EQ(backups.none_since(), began) << "one that failed is none";
+}
+
+TEST_F(MadeBackups, WhereTheirDiskIsGoneNoneIsMadeAndTheTimeGoesOn) {
+  namespace fs = std::filesystem;
+  const fs::path directory = folder_.path() / "backups";
+  const fs::path aside = folder_.path() / "aside";
+  Backups backups(clock_, options(24 * kHour));
+  backups.start();
+  const UtcMicros first = ended(1).front().begun_at / 1'000'000 * 1'000'000;
+  EXPECT_EQ(backups.none_since(), first);
+  fs::rename(directory, aside);
+  clock_.advance(kHour);
+  EXPECT_EQ(backups.newest(), std::nullopt);
+  EXPECT_EQ(backups.none_since(), first) << "not nothing: the alert must not end";
+  ASSERT_TRUE(backups.begin());
+  const Backup refused = ended(2).back();
+  EXPECT_EQ(refused.state, BackupState::Failed);
+  EXPECT_THAT(refused.faults, ElementsAre(HasSubstr("is gone, or on another disk")));
+  EXPECT_FALSE(fs::exists(directory)) << "the disk below stays as it is";
+  fs::create_directory_symlink("/proc", directory);  // another disk, without them
+  clock_.advance(kHour);
+  ASSERT_TRUE(backups.begin());
+  EXPECT_THAT(ended(3).back().faults, ElementsAre(HasSubstr("is gone, or on another disk")));
+  fs::remove(directory);
+  fs::rename(aside, directory);
+  clock_.advance(kHour);
+  ASSERT_TRUE(backups.begin());
+  EXPECT_EQ(ended(4).back().state, BackupState::Complete) << "it is back";
+  fs::remove_all(directory);
+  fs::create_directory(directory);
+  clock_.advance(kHour);
+  ASSERT_TRUE(backups.begin());
+  EXPECT_EQ(ended(5).back().state, BackupState::Complete) << "emptied by somebody, and on its disk";
+}
+
 TEST_F(MadeBackups, StoppingGivesUpTheOneThatIsMade) {
   std::latch begun(1);
   BackupOptions slow = options();
