@@ -9,6 +9,7 @@
 #include "server/api/documents.hpp"
 #include "server/api/record_blob.hpp"
 #include "server/api/upload.hpp"
+#include "server/auth/secret.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/guarded_round.hpp"
@@ -283,7 +284,7 @@ Result<LiveRecording> admitted(Live& live, const Request& request) {
   const auto token = request.header("live-token");
   const UtcMicros made = stored(recording->about_json).at("created_at").get<UtcMicros>();
   const bool fresh = live.context().clock.now() < made + kTokenMicros;
-  if (!token || sha256_hex(*token) != recording->token_sha256 || !fresh) {
+  if (!token || !is_same_digest(sha256_hex(*token), recording->token_sha256) || !fresh) {
     return fail(ErrorCode::NotFound,
                 fresh ? "Send the token of this live recording in the header Live-Token."
                       : "The token of this live recording is older than a day.",
@@ -349,8 +350,7 @@ Result<Response> create(Live& live, const Request& request) {
     return fail(resolved.error());
   }
   const UtcMicros now = live.context().clock.now();
-  // Two ids hold 160 random bits; nothing else of them is secret.
-  const std::string token = "lt_" + make_id("t", now).substr(12) + make_id("t", now).substr(12);
+  const std::string token = "lt_" + make_random_secret();
   if (body->at("device").is_string()) {
     (*body)["device"] = metadata->device.name;  // an id was resolved
   }

@@ -276,7 +276,7 @@ Result<IssuedSession> Gate::open_session(std::string_view secret) {
   who.principal = principal_of(*token);
   const ActingFor acting(who);  // the row of the audit log names the token
   IssuedSession issued;
-  issued.secret = make_session_secret();
+  issued.secret = make_random_secret();
   const UtcMicros end = now + kSessionLifetime;
   issued.session = {sha256_hex(issued.secret), token->id, now, std::min(end, token->expires_at.value_or(end))};
   if (Status opened = store_.open_session(issued.session); !opened) {

@@ -69,7 +69,7 @@ bool is_token_id(std::string_view text) {
   return text.size() == 8 && text.find_first_not_of(kBase62) == std::string_view::npos;
 }
 
-std::string make_session_secret() {
+std::string make_random_secret() {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
   for (int i = 0; i < 32; ++i) {

@@ -17,8 +17,8 @@ namespace driftlab::server {
 /// A fresh public id: eight characters of base 62.
 [[nodiscard]] std::string make_token_id();
 [[nodiscard]] bool is_token_id(std::string_view text);
-/// A fresh secret of a session: 64 hexadecimal digits.
-[[nodiscard]] std::string make_session_secret();
+/// A fresh secret that no person types, of a session or a live recording: 64 hexadecimal digits, 256 random bits.
+[[nodiscard]] std::string make_random_secret();
 /// Compares two digests in a time that does not depend on them.
 [[nodiscard]] bool is_same_digest(std::string_view a, std::string_view b);
 

@@ -53,7 +53,7 @@ TEST(Secret, HasItsShapeAndNoticesEveryTypingError) {
     EXPECT_FALSE(is_secret(text)) << text;
   }
   EXPECT_TRUE(is_token_id(make_token_id()));
-  EXPECT_EQ(make_session_secret().size(), 64U);
+  EXPECT_EQ(make_random_secret().size(), 64U);
 }
 
 TEST_F(GateTest, IsOpenUntilThereIsATokenAndNeverAgain) {
