@@ -72,8 +72,8 @@ TEST(Dispatcher, TakesJsonBodiesOnly) {
 
 TEST(Liveness, IsAnsweredWithoutThePool) {
   World world;
-  EXPECT_TRUE(world.router.match("GET", "/healthz").route->instant);
-  EXPECT_FALSE(world.router.match("GET", "/readyz").route->instant) << "it looks at the store";
+  EXPECT_EQ(world.router.match("GET", "/healthz").route->lane, Lane::Instant);
+  EXPECT_EQ(world.router.match("GET", "/readyz").route->lane, Lane::Prompt) << "it looks at the store";
 }
 
 TEST(Readiness, SaysWhyNot) {
