@@ -14,7 +14,6 @@
 #include "server/store/sqlite/backup.hpp"
 
 #include <CLI/CLI.hpp>
-
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -107,7 +107,9 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
            label("method", method) + "," + label("route", route) + "," + label("status", status),
            static_cast<double>(count));
   }
-  head(text, "driftlab_http_request_seconds", "histogram", "Time that the daemon took for a request: not that in which its body came, its client waited or a stream went on.");
+  head(text, "driftlab_http_request_seconds", "histogram",
+       "Time that the daemon took for a request: not that in which its body came, its client waited or a stream went "
+       "on.");
   for (const auto& [route, histogram] : request_seconds_) {
     write(text, "driftlab_http_request_seconds", label("route", route), histogram, kRequestBounds);
   }
