@@ -1,4 +1,4 @@
-/// toy: a square wave of 40 s that begins with the recording. It exists to be added by tests/house/recipes_test.py.
+/// square_wave: a square wave of 40 s that begins with the recording. It exists to be added by tests/house/recipes_test.py.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -32,8 +32,8 @@ std::vector<Figure> law(const Draft& before, const Draft& after, std::span<const
 
 }  // namespace
 
-Cause toy() {
-  return {.name = "toy",
+Cause square_wave() {
+  return {.name = "square_wave",
           .title = "a square wave",
           .equation = "y = amplitude in the first half of every 40 s and y = −amplitude in the second",
           .family = MeanEffect{.build = build},
