@@ -306,22 +306,24 @@ void Backups::forget_old(bool sound) {
   if (options_.keep == 0) {
     return;
   }
-  std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
-  const auto damaged = std::stable_partition(found.begin(), found.end(),
-                                             [](const Backup& each) { return each.state == BackupState::Complete; });
-  if (sound) {
-    remove_but_newest(found.begin(), damaged, options_.keep);
+  std::vector<Backup> complete_ones;
+  std::vector<Backup> damaged_ones;
+  std::vector<Backup> all = complete().value_or(std::vector<Backup>{});
+  for (Backup& each : all) {
+    (each.state == BackupState::Complete ? complete_ones : damaged_ones).push_back(std::move(each));
   }
-  remove_but_newest(damaged, found.end(), kKeepDamaged);
+  if (sound) {
+    remove_but_newest(complete_ones, options_.keep);
+  }
+  remove_but_newest(damaged_ones, kKeepDamaged);
 }
 
-void Backups::remove_but_newest(std::vector<Backup>::const_iterator oldest, std::vector<Backup>::const_iterator end,
-                                std::size_t keep) const {
-  for (; static_cast<std::size_t>(end - oldest) > keep; ++oldest) {
+void Backups::remove_but_newest(const std::vector<Backup>& oldest_first, std::size_t keep) const {
+  for (std::size_t i = 0; i + keep < oldest_first.size(); ++i) {
     std::error_code ignored;
     // First a name that is no backup's: what a crash leaves half removed must not look complete.
-    const fs::path leaving = options_.directory / (oldest->name + kLeaving);
-    fs::rename(options_.directory / oldest->name, leaving, ignored);
+    const fs::path leaving = options_.directory / (oldest_first[i].name + kLeaving);
+    fs::rename(options_.directory / oldest_first[i].name, leaving, ignored);
     fs::remove_all(leaving, ignored);
   }
 }

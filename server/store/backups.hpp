@@ -107,8 +107,7 @@ class Backups {
   /// Makes the backup that is under way.
   void make(const std::stop_token& stop);
   void forget_old(bool sound);
-  void remove_but_newest(std::vector<Backup>::const_iterator oldest, std::vector<Backup>::const_iterator end,
-                         std::size_t keep) const;
+  void remove_but_newest(const std::vector<Backup>& oldest_first, std::size_t keep) const;
   void forget_unfinished();
   [[nodiscard]] bool is_due() const;
 
