@@ -6,7 +6,6 @@ import gzip
 import hashlib
 import os
 import tempfile
-import threading
 import time
 import unittest
 from pathlib import Path
@@ -57,24 +56,7 @@ class Resumable(DaemonTest):
             content = gzip.compress(b"gz\n" + b"0.%d\n" % (i + 1) * 3_000_000, 1)
             ready.append(self.begin(content))
             self.expect(204, self.put(ready[-1], 0, content))
-        ended: list[float] = []
-        answers: list[Answer] = []
-
-        def record(upload: str) -> None:
-            answers.append(self.daemon.request("POST", f"{upload}/recording?{META}"))
-            ended.append(time.monotonic())
-        recorders = [threading.Thread(target=record, args=(upload,)) for upload in ready]
-        for each in recorders:
-            each.start()
-        while "driftlab_http_requests_in_flight 6\n" not in self.daemon.get("/metrics").text and not ended:
-            pass
-        self.expect(200, self.daemon.get("/readyz"))
-        answered = time.monotonic()
-        for each in recorders:
-            each.join()
-        for answer in answers:
-            self.expect(201, answer)
-        self.assertLess(answered, min(ended))
+        self.is_prompt_beside([lambda upload=upload: self.daemon.request("POST", f"{upload}/recording?{META}") for upload in ready], 201)
 
     def test_what_nobody_goes_on_with_for_a_day_is_forgotten(self) -> None:
         content = samples.gyro_csv(seed=12)

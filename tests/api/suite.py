@@ -1,7 +1,10 @@
 """What the suites share: a daemon for each class, and the contract as the judge of every answer it gives."""
 from __future__ import annotations
 
+import threading
+import time
 import unittest
+from collections.abc import Callable, Sequence
 
 from contract import Contract
 from daemon import Answer, Daemon
@@ -35,3 +38,25 @@ class DaemonTest(unittest.TestCase):
         for name, value in where.items():
             self.assertEqual(document.get("where", {}).get(name), value, answer.describe())
         return document
+
+    def is_prompt_beside(self, asked: Sequence[Callable[[], Answer]], status: int) -> None:
+        """All of `asked` are under way at once, and /readyz answers ten times before the first of them."""
+        ended: list[float] = []
+        answers: list[Answer] = []
+
+        def ask(one: Callable[[], Answer]) -> None:
+            answers.append(one())
+            ended.append(time.monotonic())
+        askers = [threading.Thread(target=ask, args=(one,)) for one in asked]
+        for each in askers:
+            each.start()
+        while f"driftlab_http_requests_in_flight {len(asked) + 1}\n" not in self.daemon.get("/metrics").text and not ended:
+            pass
+        for _ in range(10):  # the first may slip in before they have their threads
+            self.expect(200, self.daemon.get("/readyz"))
+        answered = time.monotonic()
+        for each in askers:
+            each.join()
+        for answer in answers:
+            self.expect(status, answer)
+        self.assertLess(answered, min(ended))
