@@ -70,37 +70,28 @@ Setting list_setting(std::string_view name, std::vector<std::string> Settings::*
           [member](const Settings& settings) { return Json(settings.*member); }};
 }
 
-Setting proxies_setting() {
-  Setting setting = list_setting("proxies", &Settings::proxies,
-                                 "Address of a proxy, or network of proxies, which connect for many people");
-  setting.set = [](Settings& settings, const std::vector<std::string>& values) -> Status {
-    for (const std::string& value : values) {
-      if (!Network::parse(value)) {
-        return refuse("proxies", "names addresses or networks such as 10.1.2.0/24, not '" + value + "'.");
-      }
+/// A list of which each entry is one that `holds`; `names` ends the sentence "NAME names … , not 'ENTRY'".
+Setting checked_list_setting(std::string_view name, std::vector<std::string> Settings::* member,
+                             std::string_view meaning, bool (*holds)(const std::string& entry),
+                             std::string_view names) {
+  Setting setting = list_setting(name, member, meaning);
+  setting.set = [=](Settings& settings, const std::vector<std::string>& values) -> Status {
+    const auto wrong = std::find_if_not(values.begin(), values.end(), holds);
+    if (wrong != values.end()) {
+      return refuse(name, "names " + std::string(names) + ", not '" + *wrong + "'.");
     }
-    settings.proxies = values;
+    settings.*member = values;
     return {};
   };
   return setting;
 }
 
-/// Hosts are compared without a port, for a proxy may stand before the daemon's own.
-Setting allow_host_setting() {
-  Setting setting = list_setting("allow_host", &Settings::allow_host,
-                                 "Another name to answer for in the Host header, without a port");
-  setting.set = [](Settings& settings, const std::vector<std::string>& values) -> Status {
-    for (const std::string& value : values) {
-      const bool is_v6 = Network::parse(value).has_value();
-      if (value.empty() || value.find('/') != std::string::npos ||
-          (!is_v6 && value.find(':') != std::string::npos && !value.starts_with('['))) {
-        return refuse("allow_host", "names hosts without a port, not '" + value + "'.");
-      }
-    }
-    settings.allow_host = values;
-    return {};
-  };
-  return setting;
+bool is_network(const std::string& entry) { return Network::parse(entry).has_value(); }
+
+/// Without a port, for a proxy may stand before the daemon's own.
+bool is_host(const std::string& entry) {
+  const bool is_v6 = is_network(entry) || (entry.starts_with('[') && entry.ends_with(']'));
+  return !entry.empty() && entry.find('/') == std::string::npos && (is_v6 || entry.find(':') == std::string::npos);
 }
 
 Setting switch_setting(std::string_view name, bool Settings::* member, std::string_view meaning) {
@@ -413,8 +404,12 @@ const std::vector<Setting>& all_settings() {
       whole_setting("cache_megabytes", &Settings::cache_megabytes, 0, 100'000'000,
                     "Local copies of recordings that lie in a database or an object storage, in --data"),
       text_setting("listen", &Settings::listen, "IP:PORT to listen on; port 0 takes any free one"),
-      allow_host_setting(),
-      proxies_setting(),
+      checked_list_setting("allow_host", &Settings::allow_host,
+                           "Another name to answer for in the Host header, without a port", is_host,
+                           "hosts without a port"),
+      checked_list_setting("proxies", &Settings::proxies,
+                           "Address of a proxy, or network of proxies, which connect for many people", is_network,
+                           "addresses or networks such as 10.1.2.0/24"),
       list_setting("webhook_allow", &Settings::webhook_allow,
                    "Host, address or network that webhooks may lead to beside the Internet, also by plain http"),
       whole_setting("workers", &Settings::workers, 0, 256, "Jobs that run at once; 0 is as many as threads"),

@@ -433,7 +433,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   options.port = address->port;
   options.io_threads = settings.io_threads;
   options.budgets = settings.budgets;
-  options.proxies = settings.proxies;
+  options.proxies = networks(settings.proxies);
   options.guard.hosts = allowed_hosts(settings, *address);
   options.guard.secure = tls != nullptr;
   options.tls = std::move(tls);

@@ -2,7 +2,6 @@
 
 #include "core/signal/text.hpp"
 #include "server/http/names.hpp"
-#include "server/store/network.hpp"
 
 #include <boost/asio/ip/address.hpp>
 
@@ -58,17 +57,15 @@ std::optional<std::string> address_in(std::string_view element) {
 
 }  // namespace
 
-bool is_listed(std::string_view address, const std::vector<std::string>& proxies) {
+bool is_listed(std::string_view address, const std::vector<Network>& proxies) {
   boost::system::error_code error;
   const auto parsed = boost::asio::ip::make_address(std::string(address), error);
-  return !error && std::any_of(proxies.begin(), proxies.end(), [&](const std::string& entry) {
-    const auto network = Network::parse(entry);
-    return network && network->holds(parsed);
-  });
+  return !error &&
+         std::any_of(proxies.begin(), proxies.end(), [&](const Network& network) { return network.holds(parsed); });
 }
 
 std::string client_address(std::string_view peer, const std::vector<std::pair<std::string, std::string>>& headers,
-                           const std::vector<std::string>& proxies) {
+                           const std::vector<Network>& proxies) {
   std::string client(peer);
   if (!is_listed(peer, proxies)) {
     return client;

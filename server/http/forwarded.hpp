@@ -1,5 +1,7 @@
 #pragma once
 /// For whom a proxy asks: the header Forwarded (RFC 7239), believed of listed proxies alone.
+#include "server/store/network.hpp"
+
 #include <string>
 #include <string_view>
 #include <utility>
@@ -7,8 +9,8 @@
 
 namespace driftlab::server {
 
-/// Whether a listed address or network (ADDRESS/BITS) holds the address.
-[[nodiscard]] bool is_listed(std::string_view address, const std::vector<std::string>& proxies);
+/// Whether one of the networks holds the address.
+[[nodiscard]] bool is_listed(std::string_view address, const std::vector<Network>& proxies);
 
 /// The address of the client behind the connection of `peer`. Each proxy appends what it saw: read from the right, the
 /// first `for` that is no listed proxy is the client, and what stands left of it is a client's own claim. `peer` itself
@@ -16,6 +18,6 @@ namespace driftlab::server {
 /// (`unknown`, `_name`). `headers`: names in lower case, in order.
 [[nodiscard]] std::string client_address(std::string_view peer,
                                          const std::vector<std::pair<std::string, std::string>>& headers,
-                                         const std::vector<std::string>& proxies);
+                                         const std::vector<Network>& proxies);
 
 }  // namespace driftlab::server

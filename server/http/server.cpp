@@ -2,7 +2,6 @@
 
 #include "server/http/connection.hpp"
 #include "server/http/forwarded.hpp"
-#include "server/store/network.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>

@@ -10,6 +10,7 @@
 #include "server/http/guard.hpp"
 #include "server/http/router.hpp"
 #include "server/store/budgets.hpp"
+#include "server/store/network.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -30,8 +31,7 @@ struct HttpOptions {
   int slow_threads = 2;  ///< for handlers that read a whole recording
   int upload_threads = 2;
   Budgets budgets;
-  std::vector<std::string> proxies;  ///< addresses and networks; exempt from the budgets of one address, as loopback
-                                     ///< is; their Forwarded counts
+  std::vector<Network> proxies;  ///< exempt from the budgets of one address, as loopback is; their Forwarded counts
   GuardLimits guard;
   std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };

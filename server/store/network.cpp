@@ -46,4 +46,14 @@ bool Network::holds(const ip::address& address) const {
   return true;
 }
 
+std::vector<Network> networks(const std::vector<std::string>& texts) {
+  std::vector<Network> parsed;
+  for (const std::string& text : texts) {
+    if (const auto network = Network::parse(text)) {
+      parsed.push_back(*network);
+    }
+  }
+  return parsed;
+}
+
 }  // namespace driftlab::server

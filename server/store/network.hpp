@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace driftlab::server {
 
@@ -24,5 +25,8 @@ struct Network {
   [[nodiscard]] static std::optional<Network> parse(std::string_view text);
   [[nodiscard]] bool holds(const boost::asio::ip::address& address) const;
 };
+
+/// The networks among `texts`.
+[[nodiscard]] std::vector<Network> networks(const std::vector<std::string>& texts);
 
 }  // namespace driftlab::server

@@ -63,7 +63,8 @@ class ConfigurationHasOrigins(unittest.TestCase):
         self.assertIn("debug, info, warning or error", self.refused("--log-level", "loud"))
         self.assertIn("cannot be read", self.refused("--config", str(self.folder)))
         self.assertIn("setting allow_host", self.refused("--config", write('allow_host = [1.5, "b"]\n')))
-        self.assertIn("without a port", self.refused("--allow-host", "host:8443"))
+        for with_port in ("host:8443", "[2001:db8::1]:8443"):
+            self.assertIn("without a port", self.refused("--allow-host", with_port))
         self.assertIn("10.1.2.0/24, not 'not-an-ip'", self.refused("--proxies", "not-an-ip"))
         self.shown("--proxies", "10.0.0.0/8", "--proxies", "2001:db8::1", "--allow-host", "[2001:db8::1]", "--allow-host", "lab.example")
 

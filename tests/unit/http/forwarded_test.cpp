@@ -1,14 +1,12 @@
 #include "server/http/forwarded.hpp"
 
-#include "server/store/network.hpp"
-
 #include <gtest/gtest.h>
 
 namespace driftlab::server {
 namespace {
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
-const std::vector<std::string> kProxies{"10.0.0.1", "10.0.0.2"};
+const std::vector<Network> kProxies = networks({"10.0.0.1", "10.0.0.2"});
 
 std::string seen(const std::string& peer, const Headers& headers) { return client_address(peer, headers, kProxies); }
 
@@ -32,12 +30,12 @@ TEST(Forwarded, ReadsPortsQuotesAndVersionSix) {
 }
 
 TEST(Forwarded, KnowsAProxyInWhicheverFormItsAddressComes) {
-  EXPECT_TRUE(is_listed("10.1.2.9", {"192.0.2.1", "10.1.2.0/24"}));
-  EXPECT_FALSE(is_listed("10.1.3.9", {"10.1.2.0/24"}));
-  EXPECT_TRUE(is_listed("2001:db8::5", {"2001:db8::/32"}));
-  EXPECT_TRUE(is_listed("::ffff:10.1.2.9", {"10.1.2.0/24"})) << "as a socket for both families has it";
-  EXPECT_TRUE(is_listed("10.1.2.9", {"::ffff:10.1.2.9"}));
-  EXPECT_FALSE(is_listed("", {"10.1.2.0/24"}));
+  EXPECT_TRUE(is_listed("10.1.2.9", networks({"192.0.2.1", "10.1.2.0/24"})));
+  EXPECT_FALSE(is_listed("10.1.3.9", networks({"10.1.2.0/24"})));
+  EXPECT_TRUE(is_listed("2001:db8::5", networks({"2001:db8::/32"})));
+  EXPECT_TRUE(is_listed("::ffff:10.1.2.9", networks({"10.1.2.0/24"}))) << "as a socket for both families has it";
+  EXPECT_TRUE(is_listed("10.1.2.9", networks({"::ffff:10.1.2.9"})));
+  EXPECT_FALSE(is_listed("", networks({"10.1.2.0/24"})));
   EXPECT_EQ(plain_text(boost::asio::ip::make_address("::ffff:10.1.2.9")), "10.1.2.9");
   EXPECT_EQ(plain_text(boost::asio::ip::make_address("2001:db8::5")), "2001:db8::5");
   EXPECT_EQ(seen("10.0.0.1", {{"forwarded", "for=\"[::ffff:192.0.2.7]\""}}), "192.0.2.7");
