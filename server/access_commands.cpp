@@ -177,7 +177,7 @@ int AccessCommands::run(const Settings& settings) const {
   if (export_->parsed()) {
     return print_audit(access);
   }
-  Gate gate(access, clock, {});
+  Gate gate(access, clock, {.budgets = settings.budgets});
   if (auto loaded = gate.load(); !loaded) {
     return complain(loaded.error());
   }

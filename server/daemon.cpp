@@ -409,8 +409,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   if (auto taken = take_over(store, opened->others, settings); !taken) {
     return fail(taken.error());
   }
-  auto gate =
-      std::make_unique<Gate>(store.access(), *opened->clock, GateOptions{settings.require_tokens, tls != nullptr});
+  auto gate = std::make_unique<Gate>(store.access(), *opened->clock,
+                                     GateOptions{settings.require_tokens, tls != nullptr, settings.budgets});
   if (auto guarded = open_gate(*gate, settings); !guarded) {
     return fail(guarded.error());
   }

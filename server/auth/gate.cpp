@@ -5,6 +5,7 @@
 #include "server/store/digest.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace driftlab::server {
 namespace {
@@ -14,8 +15,6 @@ constexpr UtcMicros kSessionLifetime = UtcMicros{12} * 60 * kMinute;
 constexpr UtcMicros kShortestOfLastAdmin = UtcMicros{24} * 60 * kMinute;
 constexpr std::size_t kLongestName = 100;
 constexpr std::size_t kMostDevices = 100;
-constexpr std::size_t kMostTokens = 1000;
-constexpr std::size_t kMostTokensEver = 10'000;  // each secret is compared with them all
 
 bool is_live(const Token& token, UtcMicros now) {
   return !token.is_damaged && !token.revoked_at && (!token.expires_at || *token.expires_at > now);
@@ -196,12 +195,13 @@ Result<IssuedToken> Gate::create(const NewToken& wanted) {
   const auto all = kept();
   const auto live =
       std::count_if(all->tokens.begin(), all->tokens.end(), [&](const Token& token) { return is_live(token, now); });
-  if (static_cast<std::size_t>(live) >= kMostTokens || all->tokens.size() >= kMostTokensEver) {
-    return fail(ErrorCode::LimitExceeded,
-                "There are " + std::to_string(live) + " tokens, and " + std::to_string(all->tokens.size()) +
-                    " with those revoked or expired; the limits are " + std::to_string(kMostTokens) + " and " +
-                    std::to_string(kMostTokensEver) + ".",
-                {{"limit", std::to_string(kMostTokens)}});
+  if (live >= options_.budgets.tokens) {
+    return fail(ErrorCode::LimitExceeded, "There are as many valid tokens as there may be " +
+                                              naming_budget("tokens", options_.budgets.tokens) + "; revoke one.");
+  }
+  if (std::ssize(all->tokens) >= options_.budgets.tokens_ever) {
+    return fail(ErrorCode::LimitExceeded, "There are as many tokens as there may be, with those revoked or expired " +
+                                              naming_budget("tokens_ever", options_.budgets.tokens_ever) + ".");
   }
   IssuedToken issued;
   issued.secret = make_secret();

@@ -8,6 +8,7 @@
 /// Tokens and sessions are held in memory, so that the check costs a hash and no disk: it runs on I/O threads. Changes
 /// are written to the store first. Thread safe.
 #include "server/store/access_store.hpp"
+#include "server/store/budgets.hpp"
 #include "server/store/clock.hpp"
 
 #include <map>
@@ -47,6 +48,7 @@ struct IssuedSession {
 struct GateOptions {
   bool require = false;  ///< authentication is on even without a token
   bool secure = false;   ///< the daemon speaks TLS: cookies say so
+  Budgets budgets = {};
 };
 
 class Gate {

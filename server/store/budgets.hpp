@@ -52,6 +52,9 @@
   BUDGET(notes_per_recording, 64, 1, 100'000, "Notes kept about a recording's file; the rest is counted")               \
   BUDGET(live_recordings, 256, 0, 100'000, "Live recordings that are not finished; beyond it 503")                      \
   BUDGET(live_recordings_per_token, 32, 0, 100'000, "Of these, those that one token began; beyond it 429")              \
+  /* tokens: each secret that comes is compared with them all */                                                        \
+  BUDGET(tokens, 1000, 1, 100'000, "Tokens that are valid")                                                             \
+  BUDGET(tokens_ever, 10'000, 1, 1'000'000, "Tokens with those revoked or expired")                                     \
   /* what is kept */                                                                                                    \
   BUDGET(recordings_per_device, 100'000, 1, 1'000'000'000, "Recordings of a device")                                    \
   BUDGET(device_bytes, 1'099'511'627'776, 4096, 9'000'000'000'000'000, "Bytes uploaded for a device")                   \

@@ -56,6 +56,22 @@ TEST(Secret, HasItsShapeAndNoticesEveryTypingError) {
   EXPECT_EQ(make_random_secret().size(), 64U);
 }
 
+TEST_F(GateTest, KeepsNoMoreTokensThanItsBudgets) {
+  GateOptions few;
+  few.budgets.tokens = 2;
+  few.budgets.tokens_ever = 3;
+  reopen(few);
+  made(Scope::Admin);
+  const IssuedToken second = made(Scope::Read);
+  const auto refused = [this] { return gate_->create({"a", Scope::Read, std::nullopt, std::nullopt}).error(); };
+  EXPECT_EQ(refused().code, ErrorCode::LimitExceeded);
+  EXPECT_NE(refused().message.find("(budget tokens = 2)"), std::string::npos);
+  ASSERT_TRUE(gate_->revoke(second.token.id));
+  const IssuedToken third = made(Scope::Read);
+  ASSERT_TRUE(gate_->revoke(third.token.id));
+  EXPECT_NE(refused().message.find("(budget tokens_ever = 3)"), std::string::npos);
+}
+
 TEST_F(GateTest, IsOpenUntilThereIsATokenAndNeverAgain) {
   EXPECT_FALSE(gate_->is_on());
   EXPECT_EQ(gate_->identify({})->scope, Scope::Admin);
