@@ -135,14 +135,16 @@ void LiveKeeper::sweep() {
   std::unique_lock lock(mutex_);
   while (!stopped_.wait_for(lock, std::chrono::minutes(1), [this] { return stopping_; })) {
     lock.unlock();
-    (void)guarded_round("live recordings", [this] {
-      const UtcMicros now = context_.clock.now();
-      for_each(recordings_.due_since(now - kUnfinishedMicros), [this](const std::string& id) { try_to_finish(id); });
-      for_each(recordings_.untouched_since(now - kLiveMicros),
-               [this](const std::string& id) { (void)recordings_.remove(id); });
-    });
+    (void)guarded_round("live recordings", [this] { round(); });
     lock.lock();
   }
+}
+
+void LiveKeeper::round() {
+  const UtcMicros now = context_.clock.now();
+  for_each(recordings_.due_since(now - kUnfinishedMicros), [this](const std::string& id) { try_to_finish(id); });
+  for_each(recordings_.untouched_since(now - kLiveMicros),
+           [this](const std::string& id) { (void)recordings_.remove(id); });
 }
 
 void LiveKeeper::try_to_finish(const std::string& id) {

@@ -41,6 +41,9 @@ class LiveKeeper {
   /// those of record_blob.
   [[nodiscard]] Result<Json> finish(const std::string& id);
 
+  /// One look at what nobody adds to; its own thread has one every minute.
+  void round();
+
  private:
   [[nodiscard]] Json characterise(const std::string& recording);
   void sweep();
