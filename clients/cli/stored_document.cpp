@@ -4,7 +4,6 @@
 #include "schema/json/characterisation.hpp"
 #include "schema/json/stored_member.hpp"
 
-#include <optional>
 #include <set>
 
 namespace driftlab::cli {
@@ -84,7 +83,9 @@ tl::expected<StoredDocument, Failure> fetch_result(const std::string& server, co
 
 tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, const std::string& device) {
   Json tables = Json::array();
-  std::optional<Failure> first;
+  Failure why{{ErrorCode::NotFound, "The daemon has no parameter table of the device \"" + device + "\".", {}},
+              Exit::BadInput};
+  bool refused = false;
   for (const char* const sensor : {"gyroscope", "accelerometer"}) {
     for (const char* const method : {"gmwm", "av"}) {
       const auto answer = fetch_document(server, "/v1/parameter-tables?device=" + percent_encode(device) +
@@ -93,7 +94,8 @@ tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, co
         return tl::unexpected(answer.error());
       }
       if (!answer) {
-        first = first ? first : answer.error();
+        why = refused ? why : answer.error();
+        refused = true;
         continue;
       }
       for (const Json& table : answer->at("tables")) {
@@ -102,7 +104,7 @@ tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, co
     }
   }
   if (tables.empty()) {
-    return tl::unexpected(*first);
+    return tl::unexpected(why);
   }
   return StoredDocument{device, Json{{"device", device}, {"tables", std::move(tables)}}};
 }
