@@ -7,7 +7,6 @@
 #include <csignal>
 #include <ctime>
 #include <fstream>
-#include <future>
 #include <thread>
 
 namespace driftlab::server {
@@ -60,14 +59,11 @@ void Signals::wait_for_stop(const std::function<void()>& reload) {
 void Signals::end_process_after(std::chrono::seconds time) {
   sigset_t stopping = waited_for_;
   sigdelset(&stopping, SIGHUP);
-  std::promise<void> detached;  // a thread that ended the process before would be one that nobody has waited for
-  std::thread([stopping, time, own = detached.get_future()] {
-    own.wait();
+  std::thread([stopping, time] {
     const timespec wait{time.count(), 0};
     const int again = sigtimedwait(&stopping, nullptr, &wait);
     _exit(again > 0 ? 128 + again : 0);
   }).detach();
-  detached.set_value();
 }
 
 }  // namespace driftlab::server
