@@ -135,12 +135,12 @@ void LiveKeeper::sweep() {
   std::unique_lock lock(mutex_);
   while (!stopped_.wait_for(lock, std::chrono::minutes(1), [this] { return stopping_; })) {
     lock.unlock();
-    (void)guarded_round("live recordings", [this] { round(); });
+    (void)guarded_round("live recordings", [this] { finish_untouched(); });
     lock.lock();
   }
 }
 
-void LiveKeeper::round() {
+void LiveKeeper::finish_untouched() {
   const UtcMicros now = context_.clock.now();
   for_each(recordings_.due_since(now - kUnfinishedMicros), [this](const std::string& id) { try_to_finish(id); });
   for_each(recordings_.untouched_since(now - kLiveMicros),

@@ -42,7 +42,7 @@ class LiveKeeper {
   [[nodiscard]] Result<Json> finish(const std::string& id);
 
   /// One look at what nobody adds to; its own thread has one every minute.
-  void round();
+  void finish_untouched();
 
  private:
   [[nodiscard]] Json characterise(const std::string& recording);

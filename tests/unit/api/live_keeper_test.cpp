@@ -57,11 +57,11 @@ class KeptLive : public testing::Test {
 TEST_F(KeptLive, BecomesARecordingWhereNobodyAddsForAnHour) {
   const std::string id = begun_for({});
   clock_.advance(kHour - 1);
-  keeper_.round();
+  keeper_.finish_untouched();
   EXPECT_TRUE(is_kept(id));
   EXPECT_TRUE(recorded().empty());
   clock_.advance(2);
-  keeper_.round();
+  keeper_.finish_untouched();
   EXPECT_FALSE(is_kept(id));
   ASSERT_EQ(recorded().size(), 1U);
   EXPECT_EQ(recorded()[0].condition, "static");
@@ -74,11 +74,11 @@ TEST_F(KeptLive, OfARevokedTokenBecomesNoneAndGoesAfterADay) {
   const std::string id = begun_for({token.id, token.name, token.scope, token.devices});
   ASSERT_TRUE(world_.gate().revoke(token.id));
   clock_.advance(2 * kHour);
-  keeper_.round();
+  keeper_.finish_untouched();
   EXPECT_TRUE(is_kept(id));
   EXPECT_TRUE(recorded().empty());
   clock_.advance(22 * kHour + 1);
-  keeper_.round();
+  keeper_.finish_untouched();
   EXPECT_FALSE(is_kept(id));
   EXPECT_TRUE(recorded().empty());
 }
