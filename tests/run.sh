@@ -44,6 +44,8 @@ done
 logs=$repository/build/logs
 mkdir -p "$logs"
 jobs=$(nproc)
+# Suites of daemons wait for half of their time: three of them keep two processors busy.
+tests_at_once=$((jobs + jobs / 2))
 export DRIFTLAB_SHARED=${DRIFTLAB_SHARED:-$repository/../shared}
 
 real_input=
@@ -87,7 +89,7 @@ build() {
 run_tests() {
   local name=$1
   shift
-  ctest --test-dir "build/$name" --output-on-failure --no-tests=error --parallel "$jobs" "$@" ${only:+--tests-regex "$only"}
+  ctest --test-dir "build/$name" --output-on-failure --no-tests=error --parallel "$tests_at_once" "$@" ${only:+--tests-regex "$only"}
 }
 
 # failures TREE: what the tests of build/TREE that failed said of it, once more at the end, where no one must look for it
