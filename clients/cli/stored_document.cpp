@@ -4,6 +4,7 @@
 #include "schema/json/characterisation.hpp"
 #include "schema/json/stored_member.hpp"
 
+#include <optional>
 #include <set>
 
 namespace driftlab::cli {
@@ -83,9 +84,7 @@ tl::expected<StoredDocument, Failure> fetch_result(const std::string& server, co
 
 tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, const std::string& device) {
   Json tables = Json::array();
-  Failure why{{ErrorCode::NotFound, "The daemon has no parameter table of the device \"" + device + "\".", {}},
-              Exit::BadInput};
-  bool refused = false;
+  std::optional<Failure> refusal;  // the first
   for (const char* const sensor : {"gyroscope", "accelerometer"}) {
     for (const char* const method : {"gmwm", "av"}) {
       const auto answer = fetch_document(server, "/v1/parameter-tables?device=" + percent_encode(device) +
@@ -94,8 +93,7 @@ tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, co
         return tl::unexpected(answer.error());
       }
       if (!answer) {
-        why = refused ? why : answer.error();
-        refused = true;
+        refusal = refusal.value_or(answer.error());
         continue;
       }
       for (const Json& table : answer->at("tables")) {
@@ -104,7 +102,8 @@ tl::expected<StoredDocument, Failure> fetch_tables(const std::string& server, co
     }
   }
   if (tables.empty()) {
-    return tl::unexpected(why);
+    const std::string none = "The daemon has no parameter table of the device \"" + device + "\".";
+    return tl::unexpected(refusal.value_or(Failure{{ErrorCode::NotFound, none, {}}, Exit::BadInput}));
   }
   return StoredDocument{device, Json{{"device", device}, {"tables", std::move(tables)}}};
 }
