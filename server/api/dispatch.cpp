@@ -131,10 +131,10 @@ Response Dispatcher::give_kept(const std::string& key, std::uint64_t changes, co
   const bool whole = etag == kept.headers.end() || !has_it(request, etag->second);
   if (!whole) {  // its body, which may be megabytes, is not copied only to be left out
     Response response;
-    response.status = kept.status;
+    response.status = 304;
     response.content_type = kept.content_type;
     response.headers = kept.headers;
-    finish(request, response);
+    compress(request, response);
     return response;
   }
   if (!takes_gzip(request)) {

@@ -1,4 +1,5 @@
 // Answers that go on: events as they come, until the client, the job or the daemon has enough.
+#include "server/http/answer_head.hpp"
 #include "server/http/connection.hpp"
 
 namespace driftlab::server {
@@ -31,10 +32,13 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
   const std::unique_ptr<EventSource> source = std::move(*settled);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(source->subject(), executor);
-  std::string text =
-      "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-cache\r\nX-Accel-Buffering: no\r\n"
-      "X-Content-Type-Options: nosniff\r\nConnection: close\r\nX-Request-Id: " +
-      request.request_id + "\r\n\r\nretry: 3000\n\n";
+  Response stream;
+  stream.content_type = "text/event-stream";
+  stream.headers = {{"X-Accel-Buffering", "no"}};
+  std::string text = answer_head(stream, {request.request_id, std::nullopt, true});
+  if (request.method != "HEAD") {
+    text += "retry: 3000\n\n";
+  }
   auto last_sent = std::chrono::steady_clock::now();
   bool last = request.method == "HEAD";
   std::optional<Timed> streamed;  // what went before its first byte is the daemon's time

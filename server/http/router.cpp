@@ -29,6 +29,11 @@ std::optional<std::vector<std::string>> bind(const std::vector<std::string_view>
   return values;
 }
 
+/// `devices` of /v1/devices/{id}; nothing where a pattern is shorter or takes any there.
+std::optional<std::string_view> family_of(const std::vector<std::string_view>& segments) {
+  return segments.size() > 2 && !segments[2].starts_with('{') ? std::optional(segments[2]) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Response> refuse_unknown_query(const Route& route, const Request& request) {
@@ -55,6 +60,8 @@ std::optional<Response> refuse_unknown_query(const Route& route, const Request& 
 
 void Router::add(Route route) {
   segments_.push_back(split(route.pattern, '/'));
+  const auto family = family_of(segments_.back());
+  (family ? families_[*family] : others_).push_back(routes_.size());
   routes_.push_back(std::move(route));
 }
 
@@ -64,14 +71,11 @@ void Router::set_scopes(const std::function<Scope(std::string_view operation_id)
   }
 }
 
-Router::Match Router::match(std::string_view method, std::string_view path) const {
-  Match match;
-  const auto given = split(path, '/');
-  // A literal segment wins over a placeholder because literal routes are tried in the order they were added; no two
-  // patterns of the table overlap otherwise.
-  for (std::size_t i = 0; i < routes_.size(); ++i) {
+void Router::try_routes(const std::vector<std::size_t>& candidates, std::string_view method,
+                        const std::vector<std::string_view>& path, Match& match) const {
+  for (const std::size_t i : candidates) {
     const Route& route = routes_[i];
-    auto values = bind(segments_[i], given);
+    auto values = bind(segments_[i], path);
     if (!values) {
       continue;
     }
@@ -82,6 +86,17 @@ Router::Match Router::match(std::string_view method, std::string_view path) cons
       match.parameters = std::move(*values);
     }
   }
+}
+
+Router::Match Router::match(std::string_view method, std::string_view path) const {
+  Match match;
+  const auto given = split(path, '/');
+  // A literal segment wins over a placeholder because literal routes are tried in the order they were added, and those
+  // of the third segment's name before those that take any; no two patterns of the table overlap otherwise.
+  if (const auto family = given.size() > 2 ? families_.find(given[2]) : families_.end(); family != families_.end()) {
+    try_routes(family->second, method, given, match);
+  }
+  try_routes(others_, method, given, match);
   return match;
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -100,8 +101,15 @@ class Router {
   [[nodiscard]] Match match(std::string_view method, std::string_view path) const;
 
  private:
+  /// Adds to `match` those of `candidates` that the path fits.
+  void try_routes(const std::vector<std::size_t>& candidates, std::string_view method,
+                  const std::vector<std::string_view>& path, Match& match) const;
+
   std::vector<Route> routes_;
   std::vector<std::vector<std::string_view>> segments_;  ///< of each route's pattern, between its slashes
+  /// Which routes a path may be of by its third segment, in the order that they were added, and which by any.
+  std::unordered_map<std::string_view, std::vector<std::size_t>> families_;
+  std::vector<std::size_t> others_;
 };
 
 }  // namespace driftlab::server

@@ -57,11 +57,11 @@ std::optional<Response> Pages::answer(const Request& request) const {
     const Kept* const asset = find(request.path);
     return asset == nullptr ? std::nullopt : std::optional(response_of(*asset, request));
   }
-  const Kept* const shell = find(kShell);
-  if (shell == nullptr || !is_page(request.path) || !prefers_html(request)) {
+  if (!is_page(request.path) || !prefers_html(request)) {
     return std::nullopt;
   }
-  return response_of(*shell, request);
+  const Kept* const shell = find(kShell);
+  return shell == nullptr ? std::nullopt : std::optional(response_of(*shell, request));
 }
 
 Response Pages::response_of(const Kept& kept, const Request& request) {

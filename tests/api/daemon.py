@@ -144,7 +144,9 @@ class Daemon:
         try:
             connection.request(method, target, body=body, headers=sent)
             response = connection.getresponse()
-            answer = Answer(method, target, response.status, {k.lower(): v for k, v in response.getheaders()}, response.read())
+            fields = [(name.lower(), value) for name, value in response.getheaders()]
+            assert len({name for name, _ in fields}) == len(fields), f"{method} {target}: a field comes twice in {fields}"
+            answer = Answer(method, target, response.status, dict(fields), response.read())
         finally:
             connection.close()
         for check in self.checks:

@@ -14,6 +14,8 @@ Router sample() {
   router.add({"POST", "/v1/jobs", "create", {}, handler});
   router.add({"GET", "/v1/jobs/{id}", "get", {}, handler});
   router.add({"POST", "/v1/jobs/{id}/cancel", "cancel", {}, handler});
+  router.add({"GET", "/healthz", "alive", {}, handler});
+  router.add({"GET", "/schemas/{file}", "schema", {}, handler});
   return router;
 }
 
@@ -27,6 +29,9 @@ TEST(Router, BindsSegments) {
 
 TEST(Router, TellsAMissingPathFromAMissingMethod) {
   const Router router = sample();
+  EXPECT_EQ(router.match("GET", "/healthz").route->operation_id, "alive");
+  EXPECT_EQ(router.match("GET", "/schemas/jobs").route->operation_id, "schema");
+  EXPECT_TRUE(router.match("GET", "/v1").allowed.empty());
   EXPECT_TRUE(router.match("GET", "/v1/job").allowed.empty());
   EXPECT_TRUE(router.match("GET", "/v1/jobs/").allowed.empty());
   EXPECT_TRUE(router.match("GET", "/v1/jobs/a/b/c").allowed.empty());
