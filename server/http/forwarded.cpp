@@ -12,7 +12,7 @@ namespace driftlab::server {
 namespace {
 
 /// Parts of `text` between separators that stand outside quotes.
-std::vector<std::string_view> split(std::string_view text, char separator) {
+std::vector<std::string_view> parts_outside_quotes(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   bool quoted = false;
   std::size_t begin = 0;
@@ -46,7 +46,7 @@ std::optional<std::string> address_of(std::string_view node) {
 
 /// The address that an element `for=…;proto=…` names.
 std::optional<std::string> address_in(std::string_view element) {
-  for (const std::string_view pair : split(element, ';')) {
+  for (const std::string_view pair : parts_outside_quotes(element, ';')) {
     const std::size_t equals = pair.find('=');
     if (equals != std::string_view::npos && same_name(trimmed(pair.substr(0, equals)), "for")) {
       return address_of(trimmed(pair.substr(equals + 1)));
@@ -58,6 +58,9 @@ std::optional<std::string> address_in(std::string_view element) {
 }  // namespace
 
 bool is_listed(std::string_view address, const std::vector<Network>& proxies) {
+  if (proxies.empty()) {
+    return false;
+  }
   boost::system::error_code error;
   const auto parsed = boost::asio::ip::make_address(std::string(address), error);
   return !error &&
@@ -73,7 +76,7 @@ std::string client_address(std::string_view peer, const std::vector<std::pair<st
   std::vector<std::string_view> elements;
   for (const auto& [name, value] : headers) {
     if (name == "forwarded") {
-      const auto more = split(value, ',');
+      const auto more = parts_outside_quotes(value, ',');
       elements.insert(elements.end(), more.begin(), more.end());
     }
   }

@@ -40,6 +40,8 @@ TEST(Target, IsSplitAndDecoded) {
                                                                              {"bare", ""},
                                                                              {"unit", "m/s^2"}}));
   EXPECT_EQ(parse_target("/a+b")->path, "/a+b");
+  EXPECT_EQ(parse_target("/a?note=\"b&c=d\" ")->query,
+            (std::vector<std::pair<std::string, std::string>>{{"note", "\"b"}, {"c", "d\" "}}));
 }
 
 TEST(Target, MalformedIsNothing) {
