@@ -83,15 +83,21 @@ bool is_request_id(std::string_view text) {
 
 HeadArrival look_at_head(std::string_view arrived, std::size_t from) {
   HeadArrival seen;
-  for (std::size_t at = from < 2 ? 0 : from - 2; at < arrived.size() && !seen.whole && !seen.folded; ++at) {
+  for (std::size_t at = from < 2 ? 0 : from - 2; !seen.whole && !seen.folded; ++at) {
+    while (at < arrived.size() && static_cast<unsigned char>(arrived[at]) >= ' ') {
+      ++at;
+    }
+    if (at >= arrived.size()) {
+      break;
+    }
     const auto byte = static_cast<unsigned char>(arrived[at]);
-    const std::string_view next = arrived.substr(at + 1);
     if (byte == '\n') {
+      const std::string_view next = arrived.substr(at + 1);
       const bool crlf = at > 0 && arrived[at - 1] == '\r';
       seen.whole = !crlf || (next.size() > 1 && next[0] == '\r');
       seen.folded = crlf && (next.starts_with(' ') || next.starts_with('\t'));
     } else {
-      seen.whole = byte < ' ' && byte != '\r' && byte != '\t';
+      seen.whole = byte != '\r' && byte != '\t';
     }
   }
   return seen;

@@ -111,8 +111,10 @@ std::optional<std::string_view> negotiate(std::optional<std::string_view> accept
 }
 
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space) {
-  if (text.find_first_of(plus_is_space ? "%+" : "%") == std::string_view::npos) {
-    return std::string(text);  // most have nothing to decode
+  const bool as_it_is =
+      text.find('%') == std::string_view::npos && (!plus_is_space || text.find('+') == std::string_view::npos);
+  if (as_it_is) {
+    return std::string(text);  // as most are
   }
   const auto encoded = boost::urls::make_pct_string_view(boost::core::string_view(text.data(), text.size()));
   if (!encoded) {

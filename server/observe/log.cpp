@@ -155,8 +155,9 @@ void LogFields::begin(std::string_view name) {
   if (!members_.empty()) {
     members_ += ',';
   }
-  append_quoted(members_, name);
-  members_ += ':';
+  members_ += '"';
+  members_ += name;
+  members_ += "\":";
 }
 
 LogFields& LogFields::text(std::string_view name, std::string_view value) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <charconv>
 #include <cstdlib>
 #include <mutex>
 #include <tuple>
@@ -17,6 +17,16 @@ namespace {
 constexpr std::string_view kAlphabet = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
 constexpr std::size_t kBodyLength = 26;
 constexpr std::size_t kTimeLength = 10;
+
+/// A number with at least `width` digits. Every line of the log has a time: printf would take most of it.
+void append_padded(std::string& text, std::int64_t value, std::size_t width) {
+  std::array<char, 24> digits{};
+  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value < 0 ? -value : value);
+  const auto length = static_cast<std::size_t>(written.ptr - digits.data());
+  text.append(value < 0 ? 1 : 0, '-');
+  text.append(width > length ? width - length : 0, '0');
+  text.append(digits.data(), length);
+}
 
 /// What follows the time in an id: a number of 80 bits, most significant digit first.
 using Tail = std::array<unsigned char, kBodyLength - kTimeLength>;
@@ -101,13 +111,16 @@ std::string rfc3339(UtcMicros time) {
   const auto day = std::chrono::floor<std::chrono::days>(instant);
   const std::chrono::year_month_day date{day};
   const std::chrono::hh_mm_ss of_day{std::chrono::floor<std::chrono::milliseconds>(instant - day)};
-  std::array<char, 64> text{};
-  const int length =
-      std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ", static_cast<int>(date.year()),
-                    static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                    static_cast<int>(of_day.hours().count()), static_cast<int>(of_day.minutes().count()),
-                    static_cast<int>(of_day.seconds().count()), static_cast<int>(of_day.subseconds().count()));
-  return {text.data(), static_cast<std::size_t>(length)};
+  std::string text;
+  text.reserve(sizeof "2026-11-21T08:30:00.123Z");
+  append_padded(text, static_cast<int>(date.year()), 4);
+  append_padded(text += '-', static_cast<unsigned>(date.month()), 2);
+  append_padded(text += '-', static_cast<unsigned>(date.day()), 2);
+  append_padded(text += 'T', of_day.hours().count(), 2);
+  append_padded(text += ':', of_day.minutes().count(), 2);
+  append_padded(text += ':', of_day.seconds().count(), 2);
+  append_padded(text += '.', of_day.subseconds().count(), 3);
+  return text += 'Z';
 }
 
 std::string first_id(std::string_view prefix, UtcMicros time) {

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """How many answers a second one core gives: /healthz, a parameter table, and a table that the client has already.
 
-usage: doors.py [SECONDS]     (each figure is the median of five runs of SECONDS / 5; default 25; DRIFTLABD is the daemon)
+usage: doors.py [SECONDS]     (each figure is the median of runs of one second; default 25; DRIFTLABD is the daemon)
 
 The daemon runs on one core, wrk (Debian package `wrk`) on another, 16 connections with keep-alive. The table is one of
 three recorded axes of two recordings. Each is measured with the cache of answers and without; the bytes of both
 must be the same. One line is that of one connection, for the latency of a request that waits for nobody. The runs of all lines
-take turns, and answers are also counted by the second of processor time that the daemon took for them: what else a machine
-does takes time from both sides of a ratio, and from the second hardly any.
+take turns of a second, for a virtual machine is faster in one minute than in the next, and a ratio is the median of the ratios
+within a turn. Answers are also counted by the second of processor time that the daemon took for them.
 """
 from __future__ import annotations
 
@@ -30,7 +30,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "api"))
 from daemon import Daemon  # noqa: E402 - beside the tests
 
-RUNS = 5
 CONNECTIONS = 16
 
 
@@ -97,9 +96,9 @@ class Case:
         self.name, self.url, self.connections, self.header = name, url, connections, header
         self.runs: list[tuple[float, float, float]] = []
 
-    def run(self, seconds: float, process: int) -> None:
+    def run(self, process: int) -> None:
         """Answers a second, answers a second of the daemon's processor time, and the 99th percentile of the latency in ms."""
-        command = ["taskset", "-c", "1", "wrk", "-t1", f"-c{self.connections}", f"-d{max(1, round(seconds))}s", "--latency", self.url]
+        command = ["taskset", "-c", "1", "wrk", "-t1", f"-c{self.connections}", "-d1s", "--latency", self.url]
         if self.header:
             command[-1:-1] = ["-H", self.header]
         before = processor_time(process)
@@ -114,17 +113,20 @@ class Case:
     def figure(self, which: int) -> float:
         return statistics.median(run[which] for run in self.runs)
 
+    def ratio(self, other: Case, which: int) -> float:
+        return statistics.median(mine[which] / its[which] for mine, its in zip(self.runs, other.runs, strict=True))
 
-def measure(cases: list[Case], seconds: float, process: int) -> None:
-    for _ in range(RUNS):
+
+def measure(cases: list[Case], turns: int, process: int) -> None:
+    for _ in range(turns):
         for case in cases:
-            case.run(seconds / RUNS, process)
+            case.run(process)
     for case in cases:
         print(f"| {case.name} | {case.figure(0):,.0f} | {case.figure(1):,.0f} | {case.figure(2):.2f} |", flush=True)
 
 
 def main() -> int:
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 25.0
+    turns = int(sys.argv[1]) if len(sys.argv) > 1 else 25
     if shutil.which("wrk") is None:
         print("doors.py: wrk is missing: apt-get install wrk", file=sys.stderr)
         return 2
@@ -142,13 +144,13 @@ def main() -> int:
             alive, table = Case("/healthz", base + "/healthz"), Case("parameter table", base + target)
             known = Case("parameter table, If-None-Match", base + target, header=f"If-None-Match: {kept[0][1]}")
             alone = Case("parameter table, one connection", base + target, connections=1)
-            measure([alive, table, known, alone], seconds, process)
+            measure([alive, table, known, alone], turns, process)
         with on_one_core(data, *keep_alive, "--budget", "answer_cache_bytes=0") as (base, process):
             made = fetch(base + target)
-            measure([Case("parameter table, cache off", base + target)], seconds, process)
+            measure([Case("parameter table, cache off", base + target)], turns, process)
     for which, what in ((0, "a second"), (1, "a second of processor time")):
-        print(f"\nratios to /healthz, answers {what}: table {table.figure(which) / alive.figure(which):.2f}, "
-              f"revalidation {known.figure(which) / alive.figure(which):.2f}", end="")
+        print(f"\nratios to /healthz, answers {what}: table {table.ratio(alive, which):.2f}, "
+              f"revalidation {known.ratio(alive, which):.2f}", end="")
     print(f"; bytes with the cache off are the same: {'yes' if made == kept[0] == kept[1] else 'NO'}")
     return 0
 
