@@ -13,6 +13,7 @@ import causes
 import computing
 import documents
 import floors
+import hiding
 import leaks
 import licence
 import measured
@@ -329,6 +330,27 @@ class Causes(Planted):
     def test_an_empty_tree_proves_nothing(self) -> None:
         with tempfile.TemporaryDirectory() as empty:
             self.refused(causes.check(Path(empty)), "no causes")
+
+
+class Hiding(Planted):
+    HEADER = "namespace driftlab {\n[[nodiscard]] inline std::vector<std::string_view> split(std::string_view text, char separator) {\n}\n}  // namespace driftlab\n"
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.plant("core/signal/text.hpp", self.HEADER)
+
+    def test_other_types_names_and_places_are_clean(self) -> None:
+        self.plant("server/a.cpp", "namespace driftlab::server {\nnamespace {\nint split(std::string_view text) {\n}\n"
+                                   "int split(std::string_view text, Kind kind) {\n}\nint parts(std::string_view text, char at) {\n}\n"
+                                   "}  // namespace\n}  // namespace driftlab::server\n")
+        self.plant("core/b.cpp", "namespace driftlab {\nnamespace {\nint split(const std::string_view words, char at) {\n}\n"
+                                 "}  // namespace\n}  // namespace driftlab\n")
+        self.assertEqual(hiding.check(self.root), [])
+
+    def test_a_function_that_hides_an_outer_one_is_refused(self) -> None:
+        self.plant("server/a.cpp", "namespace driftlab::server {\nnamespace {\nParts split(const std::string_view words, char at = ',') {\n}\n"
+                                   "}  // namespace\n}  // namespace driftlab::server\n")
+        self.refused(hiding.check(self.root), "server/a.cpp", "driftlab::split", "core/signal/text.hpp")
 
 
 class Leaks(Planted):

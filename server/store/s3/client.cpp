@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostIdle = 8;
 
 /// A word of the storage that goes into a sentence: letters alone, of a code such as `AccessDenied`.
-std::string word(const std::string& text) {
+std::string letters_of(const std::string& text) {
   std::string letters;
   for (const char c : text.substr(0, 64)) {
     if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) {
@@ -171,7 +171,7 @@ Client::Outcome Client::judge(const Call& call, Reply reply) const {
     return {std::move(reply), false, {}};
   }
   const int status = failed_late ? 500 : reply.status;
-  const std::string code = word(element_text(reply.body, "Code").value_or(""));
+  const std::string code = letters_of(element_text(reply.body, "Code").value_or(""));
   const std::string storage = "The object storage at " + place_.authority();
   const auto say = [&](ErrorCode kind, const std::string& what) {
     return fail(kind, storage + " " + what + " (" + told(status, code) + ").", {{"storage", place_.authority()}});
