@@ -28,7 +28,7 @@ std::string answer_head(const Response& response, const AnswerFrame& frame) {
   constexpr std::size_t kUsual = 640;
   const auto status = boost::beast::http::int_to_status(static_cast<unsigned>(response.status));
   const boost::beast::string_view reason = boost::beast::http::obsolete_reason(status);
-  const bool has_content = response.status != 204 && response.status != 304;
+  const bool with_content = has_content(response.status);
   std::string head;
   head.reserve(kUsual);
   head += "HTTP/1.1 " + std::to_string(response.status) + " ";
@@ -37,10 +37,10 @@ std::string answer_head(const Response& response, const AnswerFrame& frame) {
   if (frame.closes) {
     add(head, "Connection", "close");
   }
-  if (has_content) {
+  if (with_content) {
     add(head, "Content-Type", response.content_type);
   }
-  if (has_content && frame.length) {
+  if (with_content && frame.length) {
     add(head, "Content-Length", std::to_string(*frame.length));
   }
   add(head, "X-Request-Id", frame.request_id);

@@ -361,7 +361,7 @@ asio::awaitable<bool> HttpConnection::send(const Request& request, Response resp
   const bool goes_on = keep_alive && keep_alive_ && !body_unread_ && !shared_.stopping;
   const std::uint64_t length = response.file ? response.file->length : response.body.size();
   std::string text = answer_head(response, {request.request_id, length, !goes_on});
-  const bool with_body = request.method != "HEAD" && response.status != 204 && response.status != 304;
+  const bool with_body = request.method != "HEAD" && has_content(response.status);
   const bool in_one = with_body && response.body.size() <= kSentWithHead;
   if (in_one) {
     text += response.body;
